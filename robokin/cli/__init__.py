@@ -1,0 +1,72 @@
+"""The command line: one command, one file; one place that turns errors into statuses."""
+
+from __future__ import annotations
+
+import sys
+
+DONE, WRONG_INPUT, NO, INTERRUPTED = 0, 2, 3, 130
+"""Exit statuses. 1 is left to a crash, so that no script can mistake a crash for a no."""
+
+
+def main() -> None:
+    """Run the command line on the process's arguments and exit with its status."""
+    status = INTERRUPTED
+    try:
+        status = run(sys.argv[1:])
+    except KeyboardInterrupt:
+        pass
+    finally:
+        status = _flush(status)
+    sys.exit(status)
+
+
+def run(arguments: list[str]) -> int:
+    """Run one command line; its exit status. A sentence on stderr says what was wrong."""
+    from robokin.errors import RobokinError
+
+    try:
+        from robokin.cli.app import invoke
+
+        return invoke(arguments)
+    except RobokinError as error:
+        say(str(error))
+        return WRONG_INPUT
+    except BrokenPipeError:
+        # Whoever reads has what it wants (`| head`): a quiet end, and nothing more to be flushed.
+        _abandon(sys.stdout)
+        return DONE
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        say(f"{place}{error.strerror or error}, expected a place that can be read or written")
+        _abandon(sys.stdout)
+        return WRONG_INPUT
+
+
+def say(sentence: str) -> None:
+    """A note or an error, on stderr."""
+    import contextlib
+
+    with contextlib.suppress(OSError, ValueError):
+        print(f"robokin: {sentence}", file=sys.stderr)
+
+
+def _flush(status: int) -> int:
+    """Write out what stdout still holds; the status if that fails."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _abandon(sys.stdout)
+    except OSError as error:
+        say(f"standard output: {error.strerror}, expected a place that can be written")
+        _abandon(sys.stdout)
+        return status or WRONG_INPUT
+    return status
+
+
+def _abandon(stream: object) -> None:
+    """Point a broken stream at nothing, so that the interpreter's own flush at exit is silent."""
+    import os
+
+    devnull = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(devnull, stream.fileno())  # type: ignore[attr-defined]
+    os.close(devnull)

@@ -1,0 +1,1 @@
+"""One command, one file: read the arguments, call the package, hand the result to a writer."""

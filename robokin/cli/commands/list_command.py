@@ -1,0 +1,74 @@
+"""`robokin list`: what the library holds."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+from robokin.cli.options import FormatOption, JsonOption, OutputOption, output_format
+
+
+def command(
+    words: Annotated[
+        list[str] | None, typer.Argument(metavar="[WORD]...", help="Only entries with all of these words.")
+    ] = None,
+    output: OutputOption = None,
+    format: FormatOption = None,
+    json: JsonOption = False,
+) -> int:
+    """The library of robots and mechanisms: names to use in every other command.
+
+    Example: robokin list kuka
+    """
+    from robokin.cli.output.sink import format_of, sink
+    from robokin.cli.output.text import csv_records, json_document, json_line
+    from robokin.description.library import library_names, load_any
+    from robokin.errors import InputError
+
+    kind = format_of(output, output_format(format, json))
+    records = [_record(load_any(name)) for name in library_names()]
+    for word in words or []:
+        records = [record for record in records if word.casefold() in " ".join(map(str, record.values())).casefold()]
+    with sink(output) as stream:
+        if kind == "json":
+            stream.write(json_document(records))
+        elif kind == "jsonl":
+            stream.write(b"".join(json_line(record) for record in records))
+        elif kind == "csv":
+            columns = ["id", "name", "kind", "joints", "dof", "source"]
+            stream.write(csv_records(columns, [list(record.values()) for record in records]))
+        elif kind == "table":
+            stream.write(_table(records))
+        else:
+            raise InputError(f"--output {output}: a list is no array, expected .csv, .json or .jsonl")
+    return 0
+
+
+def _record(entry: Any) -> dict[str, Any]:
+    from robokin.model import Robot
+
+    robot = isinstance(entry, Robot)
+    return {
+        "id": entry.id,
+        "name": entry.name,
+        "kind": "robot" if robot else "mechanism",
+        "joints": entry.types,
+        "dof": entry.n if robot else None,
+        "source": entry.source,
+    }
+
+
+def _table(records: list[dict[str, Any]]) -> bytes:
+    from robokin.cli.output.tables import render, table
+
+    drawn = table()
+    drawn.add_column("id", style="cyan", no_wrap=True)
+    drawn.add_column("name", overflow="fold")
+    drawn.add_column("joints", no_wrap=True)
+    drawn.add_column("dof", justify="right")
+    for record in records:
+        dof = "–" if record["dof"] is None else str(record["dof"])
+        drawn.add_row(record["id"], record["name"], record["joints"], dof)
+    robots = sum(record["kind"] == "robot" for record in records)
+    return render(drawn, f"\n{robots} robots, {len(records) - robots} mechanisms")

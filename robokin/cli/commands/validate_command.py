@@ -1,0 +1,71 @@
+"""`robokin validate`: is this file a description?"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+from robokin.cli import WRONG_INPUT
+from robokin.cli.options import FormatOption, JsonOption, OutputOption, output_format
+
+
+def command(
+    files: Annotated[
+        list[str],
+        typer.Argument(metavar="FILE...", help="Descriptions, or names of the library.", show_default=False),
+    ],
+    output: OutputOption = None,
+    format: FormatOption = None,
+    json: JsonOption = False,
+) -> int:
+    """Check descriptions; the status is 2 if any is wrong.
+
+    Example: robokin validate arm.yaml
+    """
+    from robokin.cli.output.sink import format_of, sink
+    from robokin.cli.output.text import csv_records, json_document, json_line
+    from robokin.errors import InputError
+
+    kind = format_of(output, output_format(format, json))
+    records = [_verdict(file) for file in files]
+    with sink(output) as stream:
+        if kind == "json":
+            stream.write(json_document(records))
+        elif kind == "jsonl":
+            stream.write(b"".join(json_line(record) for record in records))
+        elif kind == "csv":
+            stream.write(csv_records(list(records[0]), [list(record.values()) for record in records]))
+        elif kind == "table":
+            for record in records:
+                detail = f"{record['kind']} {record['name']}" if record["valid"] else record["error"]
+                stream.write(f"{'ok   ' if record['valid'] else 'wrong'}  {_shown(record, detail)}\n".encode())
+        else:
+            raise InputError(f"--output {output}: verdicts are no array, expected .csv, .json or .jsonl")
+    return 0 if all(record["valid"] for record in records) else WRONG_INPUT
+
+
+def _shown(record: dict[str, Any], detail: str) -> str:
+    # An error names its file, line and column itself.
+    return detail if detail.startswith(record["file"]) else f"{record['file']}: {detail}"
+
+
+def _verdict(file: str) -> dict[str, Any]:
+    from robokin.description.library import load_any
+    from robokin.errors import InputError
+    from robokin.model import Robot
+
+    record: dict[str, Any] = {
+        "file": file, "valid": False, "kind": None, "name": None, "error": None, "line": None, "column": None,
+    }  # fmt: skip
+    try:
+        loaded = load_any(file)
+    except InputError as error:
+        record["error"] = str(error)
+        record["line"] = getattr(error, "line", 0) or None
+        record["column"] = getattr(error, "column", 0) or None
+    else:
+        record["valid"] = True
+        record["kind"] = "robot" if isinstance(loaded, Robot) else "mechanism"
+        record["name"] = loaded.name
+    return record

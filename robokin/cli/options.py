@@ -1,0 +1,88 @@
+"""The options that commands share, each said once, and what they mean."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from robokin.errors import InputError, did_you_mean, or_list
+from robokin.units import METRES, RADIANS, Units
+
+
+def complete_names(incomplete: str) -> list[str]:
+    """Names of the library that start so, for the shell's completion."""
+    from robokin.description.library import library_names
+
+    return [name for name in library_names() if name.startswith(incomplete)]
+
+
+RobotArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="ROBOT",
+        help="A name of `robokin list`, or a path to a description.",
+        autocompletion=complete_names,
+        show_default=False,
+    ),
+]
+FormatOption = Annotated[
+    str | None,
+    typer.Option("--format", "-f", metavar="FORMAT", help="table, json, jsonl or csv.  [default: table]"),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Short for -f json.", show_default=False)]
+AngleOption = Annotated[str | None, typer.Option("--angle", metavar="UNIT", help="Angles in deg or rad, in and out.")]
+LengthOption = Annotated[
+    str | None, typer.Option("--length", metavar="UNIT", help="Lengths in m, cm, mm or in, in and out.")
+]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="NAME=VALUE", help="Override a parameter of the description; repeatable."),
+]
+OutputOption = Annotated[
+    str | None,
+    typer.Option("--output", "-o", metavar="FILE", help="Write to a file, by its ending: .csv, .jsonl, .json or .npy."),
+]
+AsOption = Annotated[
+    str | None,
+    typer.Option(
+        "--as",
+        metavar="KIND",
+        help="Columns of the orientation: rpy, quaternion, euler or matrix.  [default: rpy]",
+    ),
+]
+
+FORMATS = ("table", "json", "jsonl", "csv")
+ORIENTATIONS = ("rpy", "quaternion", "euler", "matrix")
+
+
+def choose(value: str | None, choices: tuple[str, ...], option: str) -> str | None:
+    """A choice that is None or one of the words. Raises InputError."""
+    if value is None or value in choices:
+        return value
+    hint = did_you_mean(value, choices)
+    raise InputError(f"{option}: found '{value}', expected {or_list(choices)}{hint}")
+
+
+def output_format(format: str | None, json: bool) -> str | None:
+    """The format that --format and --json ask for together; None when neither does."""
+    chosen = choose(format, FORMATS, "--format")
+    if json and chosen not in (None, "json"):
+        raise InputError(f"--json and --format {chosen} exclude each other, expected one of them")
+    return "json" if json else chosen
+
+
+def effective_units(own: Units, length: str | None, angle: str | None) -> Units:
+    """A description's units with --length and --angle in their place."""
+    return own.override(choose(length, tuple(METRES), "--length"), choose(angle, tuple(RADIANS), "--angle"))
+
+
+def parameter_overrides(settings: list[str] | None) -> dict[str, str]:
+    """The names and expressions of --set."""
+    overrides: dict[str, str] = {}
+    for setting in settings or []:
+        name, equals, value = setting.partition("=")
+        if not equals or not name.strip() or not value.strip():
+            raise InputError(f"--set: found '{setting}', expected NAME=VALUE")
+        overrides[name.strip()] = value.strip()
+    return overrides

@@ -1,0 +1,82 @@
+"""JSON, JSON lines and CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+try:
+    from pydantic_core import to_json
+except ImportError:  # an older Typer brings no pydantic
+    to_json = None  # type: ignore[assignment]
+
+
+def json_document(record: Any) -> bytes:
+    """One JSON document, indented for eyes, its matrices a row a line; never NaN or Infinity."""
+    return (_pretty(record, 0) + "\n").encode()
+
+
+def json_line(record: Any) -> bytes:
+    """One JSON document on one line."""
+    return (json.dumps(record, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def json_list(records: Iterable[Any]) -> Iterator[bytes]:
+    """A JSON list of records, a record a line, written as they come."""
+    separator = b"[\n"
+    for record in records:
+        yield separator + json_line(record)[:-1]
+        separator = b",\n"
+    yield b"[]\n" if separator == b"[\n" else b"\n]\n"
+
+
+def _pretty(value: Any, indent: int) -> str:
+    flat = json.dumps(value, ensure_ascii=False, allow_nan=False)
+    if not isinstance(value, (dict, list)) or not value:
+        return flat
+    nested = [item for item in (value.values() if isinstance(value, dict) else value) if isinstance(item, (dict, list))]
+    short = len(flat) + indent <= 80 and not any(isinstance(item, dict) for item in nested)
+    if not nested or short:
+        return flat
+    inner = " " * (indent + 2)
+    if isinstance(value, dict):
+        items = [f"{inner}{json.dumps(key)}: {_pretty(item, indent + 2)}" for key, item in value.items()]
+        return "{\n" + ",\n".join(items) + "\n" + " " * indent + "}"
+    items = [inner + _pretty(item, indent + 2) for item in value]
+    return "[\n" + ",\n".join(items) + "\n" + " " * indent + "]"
+
+
+def csv_header(names: Iterable[str]) -> bytes:
+    """The line with the columns' names."""
+    return (",".join(names) + "\n").encode()
+
+
+def csv_rows(table: Array) -> bytes:
+    """Rows of numbers, a line each, every number with the fewest digits that give it back.
+
+    pydantic's core, which Typer brings, writes them ten times faster than repr does. The digits are the
+    same; an exponent looks like 1e-7 rather than 1e-07.
+    """
+    if not len(table):
+        return b""
+    rows = table.tolist()
+    if to_json is not None:
+        return to_json(rows)[2:-2].replace(b"],[", b"\n") + b"\n"
+    return "".join(",".join(map(repr, row)) + "\n" for row in rows).encode()
+
+
+def csv_records(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
+    """Rows of mixed values, quoted where they need it."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(rows)
+    return text.getvalue().encode()

@@ -1,0 +1,101 @@
+"""Results to plain data: what JSON says and what the other writers pick from."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.model import Robot
+from robokin.spatial import (
+    axis_angle_from_rotation,
+    euler_from_rotation,
+    quaternion_from_rotation,
+    rpy_from_rotation,
+)
+from robokin.units import Units
+
+Array = NDArray[np.float64]
+
+
+def poses_in(T: Array, units: Units) -> Array:
+    """Poses (..., 4, 4) [m] with their origins in the length unit, and no negative zeros; T is reused."""
+    if units.metres != 1.0:
+        T[..., :3, 3] /= units.metres
+    T += 0.0
+    return T
+
+
+def orientation(T: Array, kind: str, units: Units) -> Array:
+    """The orientation's columns (..., k) of poses (..., 4, 4), angles in the angle unit."""
+    R = T[..., :3, :3]
+    if kind == "quaternion":
+        return quaternion_from_rotation(R) + 0.0
+    if kind == "matrix":
+        return T.reshape(*T.shape[:-2], 16)
+    return (rpy_from_rotation(R) if kind == "rpy" else euler_from_rotation(R)) / units.radians + 0.0
+
+
+ORIENTATION_COLUMNS = {
+    "rpy": ("roll", "pitch", "yaw"),
+    "quaternion": ("qw", "qx", "qy", "qz"),
+    "euler": ("phi", "theta", "psi"),
+    "matrix": tuple(f"m{i}{j}" for i in range(1, 5) for j in range(1, 5)),
+}
+"""Columns of a CSV for each way to say an orientation; those of `matrix` are the whole 4×4 row by row."""
+
+
+def pose_columns(kind: str) -> tuple[str, ...]:
+    """Columns of a CSV for a pose: the origin, then the orientation."""
+    return ("x", "y", "z", *ORIENTATION_COLUMNS[kind])
+
+
+def pose_table(T: Array, kind: str, units: Units) -> Array:
+    """The columns (m, k) of poses (m, 4, 4) that `pose_columns` names."""
+    return np.concatenate([T[:, :3, 3], orientation(T, kind, units)], axis=1)
+
+
+def pose_record(T: Array, units: Units) -> dict[str, Any]:
+    """A pose (4, 4), its origin in the length unit already."""
+    return {
+        "matrix": T.tolist(),
+        "position": T[:3, 3].tolist(),
+        "rpy": orientation(T, "rpy", units).tolist(),
+        "quaternion": orientation(T, "quaternion", units).tolist(),
+    }
+
+
+def frame_record(T: Array, units: Units) -> dict[str, Any]:
+    """Everything that can be said of a transform (4, 4), its origin in the length unit already."""
+    axis, angle = axis_angle_from_rotation(T[:3, :3])
+    n, s, a, p = T[:3].T.tolist()
+    pose = pose_record(T, units)
+    return {
+        "matrix": pose["matrix"],
+        "n": n,
+        "s": s,
+        "a": a,
+        "p": p,
+        "position": pose["position"],
+        "rpy": pose["rpy"],
+        "euler": orientation(T, "euler", units).tolist(),
+        "quaternion": pose["quaternion"],
+        "axis_angle": {"axis": axis.tolist(), "angle": float(angle) / units.radians},
+    }
+
+
+def configuration_record(
+    robot: Robot, units: Units, q: Array, within: bool, T: Array, frames: Array | None
+) -> dict[str, Any]:
+    """The answer of `fk` for one configuration: q (n,) and T (4, 4), frames (rows, 4, 4) in the units."""
+    record: dict[str, Any] = {
+        "robot": robot.id,
+        "units": units.as_record(),
+        "q": q.tolist(),
+        "within_limits": within,
+        "pose": pose_record(T, units),
+    }
+    if frames is not None:
+        record["frames"] = [{"name": str(i), "matrix": frame.tolist()} for i, frame in enumerate(frames, start=1)]
+    return record

@@ -1,0 +1,146 @@
+"""Nodes of the tree to values: texts, numbers, lists, mappings with known keys.
+
+Each function takes a node and gives the value that belongs there, or raises a DescriptionError that
+names file, line and column, what was found and what was expected.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.description.expressions import Scope, evaluate
+from robokin.description.schema import Fields
+from robokin.description.transforms import evaluate_transform
+from robokin.description.tree import Mapping, Mark, Node, Scalar, Sequence, describe
+from robokin.errors import DescriptionError, ExpressionError, did_you_mean, or_list
+from robokin.units import Units
+
+Array = NDArray[np.float64]
+
+INFINITE = re.compile(r"[-+]?\.?(inf|infinity|nan)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Context:
+    """The units of a file and what its expressions may refer to."""
+
+    units: Units
+    scope: Scope
+
+    def factor(self, angle: bool) -> float:
+        """SI in one unit of an angle or a length."""
+        return self.units.radians if angle else self.units.metres
+
+
+def fields_of(node: Node, fields: Fields, what: str) -> dict[str, Node]:
+    """The entries of a mapping, all keys known and none missing; `what` names the mapping."""
+    if not isinstance(node, Mapping):
+        raise node.mark.error(f"found {describe(node)}, expected {what}: a mapping of keys to values")
+    for name, mark in node.keys.items():
+        if name not in fields:
+            hint = did_you_mean(name, fields) or f", expected one of {', '.join(fields)}"
+            raise mark.error(f"found the unknown key '{name}' in {what}{hint}")
+    for name, field in fields.items():
+        if field.required and name not in node.entries:
+            raise node.mark.error(f"the key '{name}' is missing in {what}, expected {name}: {field.doc}")
+    return node.entries
+
+
+def text_of(node: Node, what: str) -> str:
+    """A text that is not empty."""
+    if not isinstance(node, Scalar) or node.empty or not node.text.strip():
+        raise node.mark.error(f"found {describe(node)}, expected {what}")
+    return " ".join(node.text.split())
+
+
+def choice_of(node: Node, choices: tuple[str, ...], what: str) -> str:
+    """One of some words."""
+    text = text_of(node, f"{what}: {or_list(choices)}")
+    if text not in choices:
+        hint = did_you_mean(text, choices)
+        raise node.mark.error(f"found '{text}' as {what}, expected {or_list(choices)}{hint}")
+    return text
+
+
+def expression_text(node: Node, what: str) -> str:
+    """A scalar that is to be read as a number."""
+    if not isinstance(node, Scalar) or node.empty:
+        raise node.mark.error(f"found {describe(node)}, expected {what}: a number or an expression")
+    if INFINITE.fullmatch(node.text.strip()):
+        raise node.mark.error(f"found '{node.text}' as {what}, expected a finite number")
+    return node.text
+
+
+def raw_number_of(node: Node, scope: Scope, what: str, *, angle: bool = False) -> float:
+    """A number in the units of the file."""
+    text = expression_text(node, what)
+    try:
+        return evaluate(text, scope, angle=angle).number
+    except ExpressionError as error:
+        raise _located(node.mark, what, error) from None
+
+
+def number_of(node: Node, context: Context, what: str, *, angle: bool) -> float:
+    """A length [m] or an angle [rad]."""
+    return raw_number_of(node, context.scope, what, angle=angle) * context.factor(angle)
+
+
+def list_of(node: Node, what: str, length: int | tuple[int, int] | None = None) -> list[Node]:
+    """The items of a list, of the given length or between two lengths."""
+    if not isinstance(node, Sequence):
+        raise node.mark.error(f"found {describe(node)}, expected {what}: a list")
+    if length is not None:
+        least, most = (length, length) if isinstance(length, int) else length
+        if not least <= len(node.items) <= most:
+            count = str(least) if least == most else f"{least} to {most}"
+            raise node.mark.error(f"found {describe(node)} as {what}, expected {count} values")
+    return node.items
+
+
+def vector_of(node: Node, context: Context, what: str, *, direction: bool) -> Array:
+    """A point (3,) [m] or a unit direction (3,); two numbers are taken as x and y."""
+    items = list_of(node, what, (2, 3))
+    numbers = [raw_number_of(item, context.scope, what) for item in items]
+    vector = np.array([*numbers, 0.0][:3])
+    if not direction:
+        return vector * context.units.metres
+    length = float(np.linalg.norm(vector))
+    if length < 1e-12:
+        raise node.mark.error(f"found zero as {what}, expected a direction")
+    return vector / length
+
+
+def transform_of(node: Node, context: Context, what: str) -> Array:
+    """A transform (4, 4) [m]; nothing is the identity."""
+    if not isinstance(node, Scalar):
+        raise node.mark.error(
+            f"found {describe(node)}, expected {what}: a transform expression such as Trans(0, 0, 1) Rot(z, 90)"
+        )
+    try:
+        return evaluate_transform("" if node.empty else node.text, context.scope, context.units)
+    except ExpressionError as error:
+        raise _located(node.mark, what, error) from None
+
+
+def names_of(node: Node, what: str) -> tuple[str, ...]:
+    """A list of different names."""
+    names: list[str] = []
+    for item in list_of(node, what):
+        name = text_of(item, "a name")
+        if name in names:
+            raise item.mark.error(f"found '{name}' twice in {what}, expected each name once")
+        names.append(name)
+    return tuple(names)
+
+
+def flag_of(node: Node, what: str) -> bool:
+    """true or false."""
+    return choice_of(node, ("true", "false"), what) == "true"
+
+
+def _located(mark: Mark, what: str, error: ExpressionError) -> DescriptionError:
+    return mark.error(f"{what}: {error}")

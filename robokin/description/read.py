@@ -1,0 +1,134 @@
+"""A file or a text to a Robot or a Mechanism: what both kinds of description share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping as MappingType
+from dataclasses import dataclass
+from pathlib import Path
+
+from robokin.description.cells import Context, choice_of, expression_text, fields_of, text_of
+from robokin.description.expressions import FUNCTIONS, Parameters
+from robokin.description.schema import MECHANISM, ROBOT, UNITS, VERSION
+from robokin.description.tree import Mapping, Mark, Node, Scalar, describe, read_tree
+from robokin.errors import DescriptionError, ExpressionError, InputError, did_you_mean
+from robokin.model import Mechanism, Robot
+from robokin.units import Units
+
+MAX_BYTES = 1 << 20
+"""A description is a page; a file over 1 MiB is something else."""
+
+
+@dataclass(frozen=True)
+class Head:
+    """What stands before the table: the common fields, read."""
+
+    id: str
+    name: str
+    description: str
+    source: str
+    parameters: dict[str, float]
+    context: Context
+
+
+def read_file(path: Path, overrides: MappingType[str, str] | None = None, id: str = "") -> Robot | Mechanism:
+    """The robot or mechanism in a file.
+
+    `overrides` replaces parameters by expressions in the file's units. Raises DescriptionError with
+    line and column when the description is wrong, InputError when the file cannot be read.
+    """
+    shown = str(path)
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        raise InputError(f"{shown}: no such file, expected a description (.yaml)") from None
+    except IsADirectoryError:
+        raise InputError(f"{shown}: found a directory, expected a description (.yaml)") from None
+    except OSError as error:
+        raise InputError(f"{shown}: cannot be read ({error.strerror}), expected a description (.yaml)") from None
+    if len(data) > MAX_BYTES:
+        raise DescriptionError("found a file over 1 MiB, expected a description: a page of text", shown)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise DescriptionError("found bytes that are no text, expected YAML in UTF-8", shown, line) from None
+    return read_text(text, shown, overrides, id or path.stem)
+
+
+def read_text(
+    text: str, file: str = "description", overrides: MappingType[str, str] | None = None, id: str = ""
+) -> Robot | Mechanism:
+    """The robot or mechanism that a text describes; `file` is the name that errors give it."""
+    from robokin.description.mechanisms import read_mechanism
+    from robokin.description.robots import read_robot
+
+    if "\0" in text:
+        raise DescriptionError("found bytes that are no text, expected YAML in UTF-8", file, 1)
+    root = read_tree(text, file)
+    if not isinstance(root, Mapping):
+        raise root.mark.error(f"found {describe(root)}, expected a description: `robokin: 1`, `name: …`, `joints: …`")
+    if not root.entries:
+        raise root.mark.error("the file is empty, expected a description: `robokin: 1`, `name: …`")
+    mechanism = "links" in root.entries or "space" in root.entries
+    _check_version(root)
+    fields = fields_of(root, MECHANISM if mechanism else ROBOT, "a mechanism" if mechanism else "a robot")
+    head = _head(fields, overrides or {}, id, file)
+    return read_mechanism(fields, head) if mechanism else read_robot(fields, head)
+
+
+def _check_version(root: Mapping) -> None:
+    node = root.entries.get("robokin")
+    if node is None:
+        raise root.mark.error(f"the key 'robokin' is missing, expected `robokin: {VERSION}`, the format's version")
+    text = text_of(node, "the format's version")
+    if text != str(VERSION):
+        raise node.mark.error(f"found format version '{text}', expected {VERSION}: this robokin reads no other")
+
+
+def _head(fields: dict[str, Node], overrides: MappingType[str, str], id: str, file: str) -> Head:
+    units = _units(fields.get("units"))
+    parameters = _parameters(fields.get("parameters"), units, overrides, file)
+    values = {name: parameters.value(name).number for name in parameters.texts}
+    texts = {
+        name: text_of(fields[name], f"the {name}, a line of text") if name in fields else ""
+        for name in ("name", "description", "source")
+    }
+    return Head(id, texts["name"], texts["description"], texts["source"], values, Context(units, parameters.scope()))
+
+
+def _units(node: Node | None) -> Units:
+    if node is None:
+        return Units()
+    given = fields_of(node, UNITS, "units")
+    chosen = {name: choice_of(given[name], UNITS[name].choices, f"the unit of {name}") for name in given}
+    return Units().override(**chosen)
+
+
+def _parameters(node: Node | None, units: Units, overrides: MappingType[str, str], file: str) -> Parameters:
+    given: dict[str, Node] = {}
+    if node is not None and not (isinstance(node, Scalar) and node.empty):
+        if not isinstance(node, Mapping):
+            raise node.mark.error(f"found {describe(node)}, expected parameters: a mapping of names to numbers")
+        given = node.entries
+    texts: dict[str, str] = {}
+    for name, value in given.items():
+        mark: Mark = node.keys[name] if isinstance(node, Mapping) else value.mark
+        if not name.isidentifier():
+            raise mark.error(f"found the parameter '{name}', expected a name of letters, digits and _")
+        if name == "pi" or name in FUNCTIONS:
+            raise mark.error(f"found the parameter '{name}', expected another name: that one has a meaning already")
+        texts[name] = expression_text(value, f"parameter {name}")
+    for name in overrides:
+        if name not in texts:
+            known = f", expected one of {', '.join(texts)}" if texts else ": it has none"
+            raise InputError(f"{file} has no parameter '{name}'{did_you_mean(name, texts) or known}")
+    parameters = Parameters({**texts, **overrides}, units.degrees)
+    for name in texts:
+        try:
+            parameters.value(name)
+        except ExpressionError as error:
+            if name in overrides:
+                raise InputError(f"parameter {name}={overrides[name]}: {error}") from None
+            raise given[name].mark.error(f"parameter {name}: {error}") from None
+    return parameters

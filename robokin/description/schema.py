@@ -1,0 +1,165 @@
+"""What a description may hold: the fields, once, for the reader, for the messages and for `robokin schema`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from robokin.units import METRES, RADIANS
+
+VERSION = 1
+"""The version of the format that this robokin reads."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """A key of a mapping: what it holds (the name of a definition in the JSON Schema) and a line on it."""
+
+    holds: str
+    doc: str
+    required: bool = False
+    choices: tuple[str, ...] = ()
+
+
+Fields = dict[str, Field]
+
+CONVENTIONS = ("standard", "modified", "frames")
+ROW_TYPES = ("revolute", "prismatic", "fixed")
+SPACES = ("planar", "spherical", "spatial")
+
+COMMON: Fields = {
+    "robokin": Field("version", f"format version: {VERSION}", required=True),
+    "name": Field("text", "the name in full", required=True),
+    "description": Field("text", "one line"),
+    "source": Field("text", "where the numbers come from, and which of them are not published"),
+    "units": Field("units", "units of every length and angle in the file; default m and rad"),
+    "parameters": Field("parameters", "named numbers, usable in every cell below, overridable with --set"),
+}
+
+ROBOT: Fields = {
+    **COMMON,
+    "convention": Field("text", "default standard", choices=CONVENTIONS),
+    "base": Field("transform", "fixed transform from the world to frame 0"),
+    "joints": Field("rows", "the table: a list of rows, or one list for each column", required=True),
+    "tool": Field("transform", "fixed transform from the last frame to the end effector"),
+    "poses": Field("poses", "named configurations, usable as --q NAME"),
+}
+
+UNITS: Fields = {
+    "length": Field("text", "default m", choices=tuple(METRES)),
+    "angle": Field("text", "default rad", choices=tuple(RADIANS)),
+}
+
+ROW: Fields = {
+    "name": Field("text", "the joint's name"),
+    "type": Field("text", "revolute (R), prismatic (P) or fixed (F)", required=True, choices=ROW_TYPES),
+    "limits": Field("limits", "[min, max] of q; absent: unlimited"),
+    "offset": Field("number", "constant shift of the variable: theta = q + offset, or d = q + offset"),
+}
+
+DH_ROW: Fields = {
+    **ROW,
+    "theta": Field("number", "angle about z; not on a revolute row"),
+    "d": Field("number", "length along z; not on a prismatic row"),
+    "a": Field("number", "length along x"),
+    "alpha": Field("number", "angle about x"),
+}
+
+FRAME_ROW: Fields = {
+    **ROW,
+    "origin": Field("transform", "pose of the joint frame in the previous one at q = 0"),
+    "axis": Field("axis", "x, y, z or [x, y, z]; default z"),
+}
+
+MECHANISM: Fields = {
+    **COMMON,
+    "space": Field("text", "the space that the links move in", required=True, choices=SPACES),
+    "links": Field("names", "the links' names; the first is the ground", required=True),
+    "ground": Field("text", "the link that stands still, if it is not the first"),
+    "joints": Field("mechanism_joints", "the joints between the links", required=True),
+}
+
+FREEDOMS = {
+    "fixed": 0, "revolute": 1, "prismatic": 1, "helical": 1, "cylindrical": 2, "universal": 2,
+    "spherical": 3, "planar": 3, "rolling": 1, "gear": 2, "cam": 2,
+}  # fmt: skip
+"""Freedoms f of the joint types; `custom` states its own."""
+
+MECHANISM_JOINT: Fields = {
+    "name": Field("text", "the joint's name"),
+    "type": Field("text", "the kind of joint", required=True, choices=(*FREEDOMS, "custom")),
+    "links": Field("names", "the two or more links that it joins", required=True),
+    "at": Field("point", "a point on the joint in the assembled configuration"),
+    "axis": Field("vector", "its direction in the assembled configuration"),
+    "axes": Field("vectors", "the two directions of a universal joint"),
+    "normal": Field("vector", "the normal of a planar joint's plane"),
+    "pitch": Field("number", "a helical joint's advance along its axis in one turn"),
+    "freedoms": Field("number", "the freedoms of a custom joint"),
+    "actuated": Field("flag", "whether the joint is driven"),
+}
+
+
+def json_schema() -> dict[str, Any]:
+    """The format as a JSON Schema (draft 2020-12), for editors that complete and check YAML."""
+    number = {"anyOf": [{"type": "number"}, {"type": "string", "description": "an expression such as l1/2"}]}
+    numbers: dict[str, Any] = {"type": "array", "items": {"$ref": "#/$defs/number"}}
+    columns = {
+        name: {"type": "array"} for name in (*DH_ROW, *FRAME_ROW) if name != "type"
+    } | {"type": {"type": ["string", "array"], "description": "one letter a row, such as RRPRRR"}}  # fmt: skip
+    definitions: dict[str, Any] = {
+        "version": {"const": VERSION},
+        "text": {"type": "string"},
+        "flag": {"type": "boolean"},
+        "number": number,
+        "transform": {"type": "string", "description": "such as Trans(0, 0, 660) Rot(z, 90)"},
+        "units": _object(UNITS),
+        "parameters": {"type": "object", "additionalProperties": {"$ref": "#/$defs/number"}},
+        "poses": {"type": "object", "additionalProperties": numbers},
+        "limits": {**numbers, "minItems": 2, "maxItems": 2},
+        "names": {"type": "array", "items": {"type": "string"}, "minItems": 1},
+        "vector": {**numbers, "minItems": 2, "maxItems": 3},
+        "point": {**numbers, "minItems": 2, "maxItems": 3},
+        "vectors": {"type": "array", "items": {"$ref": "#/$defs/vector"}, "minItems": 2, "maxItems": 2},
+        "axis": {"anyOf": [{"enum": ["x", "y", "z"]}, {**numbers, "minItems": 3, "maxItems": 3}]},
+        "row": {"anyOf": [_object(DH_ROW), _object(FRAME_ROW)]},
+        "rows": {
+            "anyOf": [
+                {"type": "array", "items": {"$ref": "#/$defs/row"}, "minItems": 1},
+                {
+                    "type": "object",
+                    "properties": columns,
+                    "additionalProperties": False,
+                    "required": ["type"],
+                },
+            ]
+        },
+        "mechanism_joints": {"type": "array", "items": _object(MECHANISM_JOINT), "minItems": 1},
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "robokin description, version 1",
+        "description": "A robot (a serial chain) or a mechanism (links and joints that may form loops).",
+        "anyOf": [_object(ROBOT), _object(MECHANISM)],
+        "$defs": definitions,
+    }
+
+
+TYPE_LETTERS = {"R": "revolute", "P": "prismatic", "F": "fixed"}
+"""Short names of the row types."""
+
+
+def _object(fields: Fields) -> dict[str, Any]:
+    properties: dict[str, Any] = {}
+    for name, field in fields.items():
+        if field.choices:
+            letters = [letter for letter, full in TYPE_LETTERS.items() if full in field.choices]
+            short = letters if field.choices == ROW_TYPES else []
+            properties[name] = {"enum": [*field.choices, *short], "description": field.doc}
+        else:
+            properties[name] = {"$ref": f"#/$defs/{field.holds}", "description": field.doc}
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": [name for name, field in fields.items() if field.required],
+        "additionalProperties": False,
+    }

@@ -1,0 +1,246 @@
+"""Transform expressions: one grammar for YAML cells, `robokin frame` and the targets of `robokin ik`.
+
+    expression = { step }        a space or * between steps; they multiply from left to right
+
+with the steps of `STEPS`; case does not matter. An empty expression is the identity. A primed axis
+(`y'`) reads as the axis itself, since steps multiply on the right. Lengths and angles are in the units
+of the place where the expression stands; the result is in metres.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.description.expressions import Parser, Scope
+from robokin.errors import ExpressionError, did_you_mean
+from robokin.kinematics.dh import modified_dh, standard_dh
+from robokin.spatial import (
+    invert,
+    nearest_rotation,
+    rotation_error,
+    rotation_from_euler,
+    rotation_from_quaternion,
+    rotation_from_rpy,
+    rotation_transform,
+    transform,
+    translation_transform,
+)
+from robokin.units import Units
+
+Array = NDArray[np.float64]
+
+STEPS = {
+    "trans": "Trans(x, y, z)",
+    "rot": "Rot(x|y|z, angle) or Rot([x, y, z], angle)",
+    "rpy": "RPY(roll, pitch, yaw)",
+    "euler": "Euler(phi, theta, psi)",
+    "quat": "Quat(w, x, y, z)",
+    "dh": "DH(theta, d, a, alpha)",
+    "mdh": "MDH(alpha, a, theta, d)",
+    "inv": "Inv(…)",
+    "matrix": "Matrix([[…], […], […], […]])",
+}
+"""The steps by their name in lower case, with how they are written."""
+
+DIGITS_LOST = 1e-3
+"""A matrix or quaternion this near to a rotation is one whose digits were cut in print (four digits leave
+1e-4); the nearest rotation is taken. Beyond, it is something else and is refused."""
+
+ROUNDING = 1e-12
+"""A matrix this near to a rotation is taken as it stands."""
+
+Kind = Literal["length", "angle", "ratio"]
+
+
+@dataclass
+class Reader:
+    """Reads one transform expression; `notes` collects what the user should know of it."""
+
+    text: str
+    scope: Scope
+    units: Units
+    notes: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.parser = Parser(self.text, self.scope)
+
+    def whole(self) -> Array:
+        """The transform (4, 4) of the whole text [m]."""
+        T = self.steps()
+        self.parser.end()
+        return T
+
+    def steps(self) -> Array:
+        """The product of the steps up to a closing parenthesis or the end."""
+        T = np.eye(4)
+        parser = self.parser
+        parser.depth += 1
+        if parser.depth > 20:
+            raise parser.error("nested too deeply, expected a plain product of steps")
+        while parser.token.kind == "name":
+            T = T @ self.step()
+            if parser.token.text == "*":
+                parser.accept("*")
+                if parser.token.kind != "name":
+                    raise parser.error(f"found {parser.found()} after '*', expected a step")
+        parser.depth -= 1
+        return T
+
+    def step(self) -> Array:
+        """One step: a name and its arguments."""
+        parser = self.parser
+        token = parser.token
+        name = token.text.lower()
+        if name not in STEPS:
+            hint = did_you_mean(token.text, [form.split("(")[0] for form in STEPS.values()])
+            forms = ", ".join(form.split("(")[0] for form in STEPS.values())
+            raise parser.error(f"found the unknown step '{token.text}'{hint or f', expected one of {forms}'}")
+        parser.index += 1
+        if not parser.accept("("):
+            raise parser.error(f"found {parser.found()} after '{token.text}', expected {STEPS[name]}")
+        try:
+            T: Array = getattr(self, f"_{name}")()
+        except ValueError as error:
+            if isinstance(error, ExpressionError):
+                raise
+            raise parser.error(f"{error}: expected {STEPS[name]}", token) from None
+        if not parser.accept(")"):
+            raise parser.error(f"found {parser.found()}, expected ')' to end {STEPS[name]}")
+        return T
+
+    def _numbers(self, form: str, *kinds: Kind) -> list[float]:
+        """As many numbers as kinds, separated by commas, in metres and radians."""
+        values = []
+        for i, kind in enumerate(kinds):
+            if i and not self.parser.accept(","):
+                raise self.parser.error(
+                    f"found {self.parser.found()} after {i} of {len(kinds)} arguments, expected {STEPS[form]}"
+                )
+            values.append(self._number(kind))
+        return values
+
+    def _number(self, kind: Kind) -> float:
+        if kind == "angle":
+            return self.parser.angle() * self.units.radians
+        value = self.parser.number().number
+        return value * self.units.metres if kind == "length" else value
+
+    def _trans(self) -> Array:
+        return translation_transform(self._numbers("trans", "length", "length", "length"))
+
+    def _rot(self) -> Array:
+        parser = self.parser
+        axis = self._axis()
+        if not parser.accept(","):
+            raise parser.error(f"found {parser.found()} after the axis, expected {STEPS['rot']}")
+        return rotation_transform(axis, self._number("angle"))
+
+    def _axis(self) -> list[float]:
+        parser = self.parser
+        letter = parser.token.text.lower().rstrip("'")
+        if parser.token.kind == "name" and letter in ("x", "y", "z"):
+            parser.index += 1
+            return [float(letter == name) for name in "xyz"]
+        start = parser.token
+        if not parser.accept("["):
+            raise parser.error(f"found {parser.found()} as the axis, expected x, y, z or [x, y, z]")
+        axis = self._numbers("rot", "ratio", "ratio", "ratio")
+        parser.expect("]")
+        if max(abs(part) for part in axis) < 1e-12:
+            raise parser.error("the axis is zero, expected a direction", start)
+        return axis
+
+    def _rpy(self) -> Array:
+        return transform(rotation_from_rpy(self._numbers("rpy", "angle", "angle", "angle")), np.zeros(3))
+
+    def _euler(self) -> Array:
+        return transform(rotation_from_euler(self._numbers("euler", "angle", "angle", "angle")), np.zeros(3))
+
+    def _quat(self) -> Array:
+        token = self.parser.token
+        q = self._numbers("quat", "ratio", "ratio", "ratio", "ratio")
+        length = float(np.linalg.norm(q))
+        if abs(length - 1.0) > DIGITS_LOST:
+            raise self.parser.error(f"the quaternion's length is {length:.6g}, expected 1", token)
+        if abs(length - 1.0) > ROUNDING:
+            self.notes.append(f"the quaternion's length is {length:.9g}; it is taken as 1")
+        return transform(rotation_from_quaternion(q), np.zeros(3))
+
+    def _dh(self) -> Array:
+        theta, d, a, alpha = self._numbers("dh", "angle", "length", "length", "angle")
+        return standard_dh(theta, d, a, alpha)
+
+    def _mdh(self) -> Array:
+        alpha, a, theta, d = self._numbers("mdh", "angle", "length", "angle", "length")
+        return modified_dh(alpha, a, theta, d)
+
+    def _inv(self) -> Array:
+        return invert(self.steps())
+
+    def _matrix(self) -> Array:
+        parser = self.parser
+        start = parser.token
+        rows: list[list[float]] = []
+        parser.expect("[")
+        while not rows or parser.accept(","):
+            parser.expect("[")
+            row = [parser.number().number]
+            while parser.accept(","):
+                row.append(parser.number().number)
+            parser.expect("]")
+            rows.append(row)
+        parser.expect("]")
+        try:
+            T, note = pose_from_matrix(rows, self.units)
+        except ValueError as error:
+            raise parser.error(str(error), start) from None
+        if note:
+            self.notes.append(note)
+        return T
+
+
+def pose_from_matrix(rows: object, units: Units) -> tuple[Array, str]:
+    """A pose (4, 4) [m] from a homogeneous matrix in the given length unit, and a note or "".
+
+    Three rows of four are taken too (the last one is 0 0 0 1). A rotation whose digits were cut is made
+    a rotation and a note says by how much it was off. Raises ValueError when it is no pose, saying how far off.
+    """
+    try:
+        M = np.array(rows, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError("the matrix's rows differ in length, expected 4 rows of 4 numbers") from None
+    if M.shape == (3, 4):
+        M = np.vstack([M, [0.0, 0.0, 0.0, 1.0]])
+    if M.shape != (4, 4):
+        shape = "×".join(str(count) for count in M.shape)
+        raise ValueError(f"found a matrix of {shape}, expected 4×4")
+    if not np.all(np.isfinite(M)):
+        raise ValueError("the matrix holds a number that is not finite, expected finite numbers")
+    if np.max(np.abs(M[3] - [0.0, 0.0, 0.0, 1.0])) > ROUNDING:
+        raise ValueError(f"the last row is {' '.join(f'{v:g}' for v in M[3])}, expected 0 0 0 1")
+    R = M[:3, :3]
+    off = float(rotation_error(R))
+    if np.linalg.det(R) < 0.0:
+        raise ValueError("the upper left 3×3 is a reflection (its determinant is negative), expected a rotation")
+    if off > DIGITS_LOST:
+        raise ValueError(
+            f"the upper left 3×3 is no rotation: RᵀR is off by {off:.2g}, expected at most {DIGITS_LOST:g}"
+        )
+    note = ""
+    if off > ROUNDING:
+        R = nearest_rotation(R)
+        note = f"the matrix is a rotation only to {off:.1g}; the nearest rotation is taken"
+    return transform(R, M[:3, 3] * units.metres), note
+
+
+def evaluate_transform(text: str, scope: Scope, units: Units, notes: list[str] | None = None) -> Array:
+    """The transform (4, 4) [m] that an expression describes. Raises ExpressionError.
+
+    `notes` takes sentences that the user should see, such as that a printed matrix was made a rotation.
+    """
+    reader = Reader(text, scope, units, [] if notes is None else notes)
+    return reader.whole()

@@ -1,0 +1,112 @@
+"""Forward kinematics: joint values to poses."""
+
+from __future__ import annotations
+
+import math
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from robokin.errors import InputError
+from robokin.kinematics.chain import chain_of, exact, row_constants
+from robokin.kinematics.columns import BLOCK, Constant, Plan
+from robokin.model import Robot
+
+Array = NDArray[np.float64]
+
+
+def forward_kinematics(robot: Robot, q: ArrayLike) -> Array:
+    """The pose of the tool in the world.
+
+    q: (..., n) joint values in file order [rad | m]. Returns (..., 4, 4) [m].
+    NaN in a row of q gives NaN in its pose. Raises InputError when q has another length than n.
+    """
+    return _frames(robot, q, "pose")[..., 0, :, :]
+
+
+def link_frames(robot: Robot, q: ArrayLike) -> Array:
+    """The frames of the links in the world, base to last, before the tool.
+
+    q: (..., n) joint values in file order [rad | m]. Returns (..., n + 1, 4, 4) [m]: frame 0 is the
+    base's, frame k the one that the row of joint k leads to. Fixed rows extend the link that they
+    follow, so that `link_frames(robot, q)[..., -1, :, :] @ robot.tool` is the tool's pose.
+    """
+    return _frames(robot, q, "links")
+
+
+def row_frames(robot: Robot, q: ArrayLike) -> Array:
+    """The frame after every row of the table, fixed rows included.
+
+    q: (..., n) joint values in file order [rad | m]. Returns (..., rows, 4, 4) [m].
+    """
+    return _frames(robot, q, "rows")
+
+
+def joint_frames(robot: Robot, q: ArrayLike) -> Array:
+    """The frame that each joint starts from, its axis along z, and the tool's pose last.
+
+    q: (..., n) joint values in file order [rad | m]. Returns (..., n + 1, 4, 4) [m].
+    """
+    return _frames(robot, q, "joints")
+
+
+def _frames(robot: Robot, q: ArrayLike, which: str) -> Array:
+    q = joint_values(robot, q)
+    plan = _plan(robot, which)
+    rows = q.reshape(math.prod(q.shape[:-1]), robot.n)
+    out = np.empty((len(rows), plan.marks, 4, 4))
+    for start in range(0, len(rows), BLOCK):
+        plan.frames(rows[start : start + BLOCK], out[start : start + BLOCK])
+    return out.reshape(*q.shape[:-1], plan.marks, 4, 4)
+
+
+def joint_values(robot: Robot, q: ArrayLike) -> Array:
+    """q as an array (..., n) of floats; InputError when it is not one."""
+    try:
+        q = np.asarray(q, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError("joint values must be numbers, in an array (..., n)") from None
+    if q.ndim == 0 or q.shape[-1] != robot.n:
+        given = "a single number" if q.ndim == 0 else f"{q.shape[-1]}"
+        raise InputError(
+            f"q has {given} in its last dimension, expected {robot.n}: "
+            f"one value for each joint of {robot.name} ({robot.types or 'no joints'})"
+        )
+    return q
+
+
+_plans: WeakKeyDictionary[Robot, dict[str, Plan]] = WeakKeyDictionary()
+
+
+def _plan(robot: Robot, which: str) -> Plan:
+    kept = _plans.setdefault(robot, {})
+    if which not in kept:
+        chain = chain_of(robot)
+        segments = {"pose": _pose_segments, "joints": _joint_segments}.get(which)
+        marked = segments(chain.constants) if segments else _row_segments(robot, which == "rows")
+        kept[which] = Plan(marked, chain.revolute, chain.offsets)
+    return kept[which]
+
+
+def _pose_segments(constants: Array) -> list[list[Constant]]:
+    return [[Constant(C, mark=i == len(constants) - 1)] for i, C in enumerate(constants)]
+
+
+def _joint_segments(constants: Array) -> list[list[Constant]]:
+    return [[Constant(C, mark=True)] for C in constants]
+
+
+def _row_segments(robot: Robot, every_row: bool) -> list[list[Constant]]:
+    """The constants row by row; a mark after every row, or only after the last row of each link."""
+    segments = [[Constant(robot.base, mark=not every_row)]]
+    for row in robot.rows:
+        before, after = row_constants(row, robot.convention)
+        segments[-1].append(Constant(before))
+        if row.moves:
+            segments.append([Constant(exact(after), mark=True)])
+        else:
+            if not every_row:
+                segments[-1] = [Constant(part.matrix) for part in segments[-1]]
+            segments[-1].append(Constant(after, mark=True))
+    return segments

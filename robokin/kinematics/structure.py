@@ -1,0 +1,126 @@
+"""What kind of arm a robot is: its class, its wrist, the dimension of the poses it can reach.
+
+All of it is read off the joint axes at one configuration chosen at random once and for all: what holds
+there but for chance (axes parallel, meeting in a point, the Jacobian's rank) holds everywhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.kinematics.forward import joint_frames
+from robokin.kinematics.jacobian import jacobian
+from robokin.model import Robot
+
+Array = NDArray[np.float64]
+
+SAME = 1e-6
+"""Sines of angles, and distances as parts of the arm's size, below which axes are taken as parallel or
+meeting: tables are printed to some five digits, and no real arm is so nearly special by chance."""
+
+
+@dataclass(frozen=True)
+class Structure:
+    """The class of the arm, its wrist in words (or ""), and M, the dimension of the poses it can reach."""
+
+    arm: str
+    wrist: str
+    joints: int
+    dimension: int
+
+    @property
+    def redundancy(self) -> int:
+        """R = N - M: how many joints could be held without losing anything."""
+        return self.joints - self.dimension
+
+
+def structure_of(robot: Robot) -> Structure:
+    """The structure of a robot."""
+    axes = _Axes(robot)
+    return Structure(_arm_class(robot.types, axes), _wrist(robot.types, axes), robot.n, _dimension(robot, axes))
+
+
+class _Axes:
+    """The joint axes at a generic configuration, directions z: (n, 3) and points o: (n, 3) on them."""
+
+    def __init__(self, robot: Robot) -> None:
+        # An arbitrary seed; the values stay within ±60° and ±1 m, away from the stretched arm.
+        self.q = np.random.default_rng(20).uniform(-1.0, 1.0, robot.n)
+        frames = joint_frames(robot, self.q)
+        self.z, self.o = frames[:-1, :3, 2], frames[:-1, :3, 3]
+        spread = frames[:, :3, 3] - frames[0, :3, 3]
+        self.size = float(np.max(np.linalg.norm(spread, axis=1), initial=0.0)) or 1.0
+
+    def parallel(self, *joints: int) -> bool:
+        """Whether the axes have one direction."""
+        crosses = np.cross(self.z[list(joints)], self.z[joints[0]])
+        return bool(np.max(np.linalg.norm(crosses, axis=1)) < SAME)
+
+    def perpendicular(self, i: int, j: int) -> bool:
+        """Whether two axes are at right angles."""
+        return bool(abs(self.z[i] @ self.z[j]) < SAME)
+
+    def concurrent(self, *joints: int) -> bool:
+        """Whether the axes meet in one point: the least squares point lies on all of them."""
+        z, o = self.z[list(joints)], self.o[list(joints)]
+        off = np.eye(3) - z[:, :, None] * z[:, None, :]
+        point, _, rank, _ = np.linalg.lstsq(off.reshape(-1, 3), np.einsum("kij,kj->ki", off, o).ravel(), rcond=1e-9)
+        distance = np.linalg.norm(np.einsum("kij,kj->ki", off, point - o), axis=1)
+        return bool(rank == 3 and np.max(distance) < SAME * self.size)
+
+
+def _arm_class(types: str, axes: _Axes) -> str:
+    """The class by the first three joints, as the lectures sort them."""
+    n, first = len(types), types[:3]
+    if n == 0:
+        return "none (no joints)"
+    if set(types) == {"R"} and axes.parallel(*range(n)):
+        return "planar"
+    if n < 3:
+        return "two joints" if n == 2 else "one joint"
+    if first == "PPP":
+        return "Cartesian"
+    turning = [i for i in range(3) if types[i] == "R"]
+    sliding = [i for i in range(3) if types[i] == "P"]
+    if len(turning) == 1:
+        along = [i for i in sliding if axes.parallel(turning[0], i)]
+        across = [i for i in sliding if axes.perpendicular(turning[0], i)]
+        return "cylindrical" if along and across else "general (R and 2 P)"
+    if len(turning) == 2:
+        if axes.parallel(0, 1, 2):
+            return "SCARA"
+        if axes.perpendicular(*turning) and axes.perpendicular(turning[1], sliding[0]):
+            return "spherical"
+        return "general (2 R and P)"
+    if types[:4] == "RRRP" and axes.parallel(0, 1, 2, 3):
+        return "SCARA"
+    if n == 3 and axes.concurrent(0, 1, 2):
+        return "spherical wrist"
+    return "anthropomorphic"
+
+
+def _wrist(types: str, axes: _Axes) -> str:
+    n = len(types)
+    if n < 5 or types[-2:] != "RR":
+        return ""
+    if n >= 6 and types[-3:] == "RRR":
+        names = f"axes {n - 2}, {n - 1}, {n}"
+        if axes.concurrent(n - 3, n - 2, n - 1):
+            return f"spherical: {names} meet in one point"
+        return f"not spherical: {names} do not meet in one point"
+    return f"two axes, {n - 1} and {n}"
+
+
+def _dimension(robot: Robot, axes: _Axes) -> int:
+    """The Jacobian's rank with lengths measured in the arm's size."""
+    if not robot.n:
+        return 0
+    J = jacobian(robot, axes.q)
+    J[:3] /= axes.size
+    sliding = ~robot.revolute
+    J[:, sliding] *= axes.size
+    singular = np.linalg.svd(J, compute_uv=False)
+    return int(np.sum(singular > SAME * singular[0]))

@@ -1,0 +1,80 @@
+"""A mechanism: links joined by joints that may form loops. Metres and radians throughout."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.units import Units
+
+Array = NDArray[np.float64]
+Space = Literal["planar", "spherical", "spatial"]
+
+LAMBDA: Mapping[str, int] = MappingProxyType({"planar": 3, "spherical": 3, "spatial": 6})
+"""Freedoms of an unconstrained link by the space that it lives in: Grübler's λ."""
+
+
+@dataclass(frozen=True, eq=False)
+class MechanismJoint:
+    """A joint between two or more links.
+
+    `freedoms` is f, what it lets two links do against each other; a joint of m links counts as m - 1
+    such joints. `at` (3,) [m] is a point on it and `axes` (k, 3) are its unit directions in the
+    assembled configuration (two for a universal joint, the normal for a planar one); None where the
+    description gives no geometry. `pitch` [m/rad] is a helical joint's advance.
+    """
+
+    name: str
+    type: str
+    links: tuple[str, ...]
+    freedoms: int
+    at: Array | None = None
+    axes: Array | None = None
+    pitch: float = 0.0
+    actuated: bool = False
+
+    @property
+    def multiplicity(self) -> int:
+        """How many two-link joints it counts as: m - 1 for m links."""
+        return len(self.links) - 1
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """Links, the joints between them, and the link that stands still."""
+
+    name: str
+    space: Space
+    links: tuple[str, ...]
+    joints: tuple[MechanismJoint, ...]
+    ground: str
+    id: str = ""
+    description: str = ""
+    source: str = ""
+    units: Units = field(default_factory=Units)
+    parameters: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Make the parameters read-only."""
+        object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
+
+    @property
+    def order(self) -> int:
+        """Grübler's λ: the freedoms of an unconstrained link."""
+        return LAMBDA[self.space]
+
+    @property
+    def types(self) -> str:
+        """The joints' types in a word, such as RRRP; E is a planar joint, G any contact."""
+        letters = {"fixed": "F", "revolute": "R", "prismatic": "P", "helical": "H", "cylindrical": "C",
+                   "universal": "U", "spherical": "S", "planar": "E"}  # fmt: skip
+        return "".join(letters.get(joint.type, "G") * joint.multiplicity for joint in self.joints)
+
+    def __repr__(self) -> str:
+        """A line that names the mechanism."""
+        return f"<Mechanism {self.id or self.name!r}: {len(self.links)} links, {len(self.joints)} joints>"

@@ -1,0 +1,142 @@
+"""A robot: a base, a table of rows (joints and fixed steps), a tool. Metres and radians throughout."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from functools import cached_property
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from robokin.errors import InputError
+from robokin.units import Units
+
+Array = NDArray[np.float64]
+Convention = Literal["standard", "modified", "frames"]
+
+LIMIT_TOLERANCE = 1e-9
+"""A joint value this far [rad | m] outside its limits is still within: limits are inclusive, and a
+value that went through a change of units or a solver lands within rounding of them."""
+
+
+class JointType(StrEnum):
+    """What a row of the table does: turn about z, slide along z, or neither."""
+
+    REVOLUTE = "revolute"
+    PRISMATIC = "prismatic"
+    FIXED = "fixed"
+
+    @property
+    def letter(self) -> str:
+        """R, P or F, as in `RRPRRR`."""
+        return self.value[0].upper()
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """One row of the table.
+
+    In a DH table the cells `theta`, `d`, `a`, `alpha` hold the constants of the row (`theta` of a
+    revolute and `d` of a prismatic row are 0: the variable stands there, shifted by `offset`). In the
+    `frames` convention the row is `origin` (4, 4), then the motion about or along `axis` (3,).
+    """
+
+    name: str
+    type: JointType
+    theta: float = 0.0
+    d: float = 0.0
+    a: float = 0.0
+    alpha: float = 0.0
+    offset: float = 0.0
+    limits: tuple[float, float] = (-np.inf, np.inf)
+    origin: Array | None = None
+    axis: Array | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether the row has a joint variable."""
+        return self.type is not JointType.FIXED
+
+    @property
+    def unlimited(self) -> bool:
+        """Whether the joint has no limits."""
+        return bool(np.isinf(self.limits[0]) and np.isinf(self.limits[1]))
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """A serial chain: T = base · row 1 · … · row m · tool, as the description gives it.
+
+    `rows` are all rows of the table, `joints` those with a variable, in the order of q.
+    """
+
+    name: str
+    rows: tuple[Joint, ...]
+    convention: Convention = "standard"
+    id: str = ""
+    description: str = ""
+    source: str = ""
+    units: Units = field(default_factory=Units)
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    base: Array = field(default_factory=lambda: np.eye(4))
+    tool: Array = field(default_factory=lambda: np.eye(4))
+    poses: Mapping[str, Array] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Make every array and mapping read-only; refuse poses of the wrong length."""
+        for name, pose in self.poses.items():
+            if np.shape(pose) != (self.n,):
+                raise InputError(f"pose '{name}' has {np.size(pose)} values, expected {self.n}: one a joint")
+        frozen = {name: _read_only(pose) for name, pose in self.poses.items()}
+        object.__setattr__(self, "poses", MappingProxyType(frozen))
+        object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
+        object.__setattr__(self, "base", _read_only(self.base))
+        object.__setattr__(self, "tool", _read_only(self.tool))
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """The rows with a joint variable, in the order of q."""
+        return tuple(row for row in self.rows if row.moves)
+
+    @cached_property
+    def n(self) -> int:
+        """The number of joint variables, N."""
+        return len(self.joints)
+
+    @cached_property
+    def types(self) -> str:
+        """The joints' types in a word, such as RRPRRR."""
+        return "".join(joint.type.letter for joint in self.joints)
+
+    @cached_property
+    def revolute(self) -> NDArray[np.bool_]:
+        """(n,) whether each joint turns."""
+        mask = np.array([joint.type is JointType.REVOLUTE for joint in self.joints], dtype=bool)
+        mask.flags.writeable = False
+        return mask
+
+    @cached_property
+    def limits(self) -> Array:
+        """(n, 2) least and greatest value of each joint [rad | m], ±inf where there is none."""
+        return _read_only(np.array([joint.limits for joint in self.joints]).reshape(self.n, 2))
+
+    def within_limits(self, q: ArrayLike) -> NDArray[np.bool_]:
+        """(...) whether each q: (..., n) [rad | m] respects every limit; limits are inclusive."""
+        q = np.asarray(q, dtype=np.float64)
+        low, high = self.limits[:, 0], self.limits[:, 1]
+        inside = (q >= low - LIMIT_TOLERANCE) & (q <= high + LIMIT_TOLERANCE)
+        return np.asarray(np.all(inside, axis=-1))
+
+    def __repr__(self) -> str:
+        """A line that names the robot."""
+        return f"<Robot {self.id or self.name!r}: {self.types or 'no joints'}, {self.convention} convention>"
+
+
+def _read_only(values: ArrayLike) -> Array:
+    array = np.array(values, dtype=np.float64)
+    array.flags.writeable = False
+    return array
