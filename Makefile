@@ -29,7 +29,7 @@ bench: $(VENV)/installed ## speed, as ratios against peers and limits, in one ru
 	$(BIN)/python -m benchmarks
 
 wheel: $(VENV)/installed ## build the wheel and run it alone, outside this folder
-	PYTHON=$(BIN)/python benchmarks/../tests/wheel.sh
+	PYTHON=$(BIN)/python tests/wheel.sh
 
 clean:           ## remove the environment and what was built
 	rm -rf $(VENV) dist build

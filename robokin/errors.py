@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+MAX_SHOWN = 60
+"""Characters of what was given that a message repeats."""
+
 
 class RobokinError(Exception):
     """Something robokin was asked to do cannot be done; the message is a whole sentence."""
@@ -24,21 +27,23 @@ class OutputError(RobokinError):
 class ExpressionError(InputError):
     """An expression cannot be read or has no value.
 
-    `text` is the expression, `position` the index in it where the trouble is.
+    `text` is the expression, `position` the index in it where the trouble is, and `parameter` the
+    parameter that the expression belongs to, if it does.
     """
 
-    def __init__(self, message: str, text: str = "", position: int = 0) -> None:
+    def __init__(self, message: str, text: str = "", position: int = 0, parameter: str = "") -> None:
         super().__init__(message)
         self.message = message
         self.text = text
         self.position = position
+        self.parameter = parameter
 
     def __str__(self) -> str:
         """The sentence, with the place in the expression where it is worth showing."""
-        shown = self.text.strip()
-        if not shown or shown in self.message or len(shown) > 60:
+        text = " ".join(self.text.split())
+        if not text or text in self.message or len(text) > MAX_SHOWN:
             return self.message
-        return f"{self.message} (in '{shown}')"
+        return f"{self.message} (in '{shown(text)}')"
 
 
 class DescriptionError(InputError):
@@ -60,10 +65,19 @@ class DescriptionError(InputError):
         return f"{place}: {self.message}" if place else self.message
 
 
+def shown(text: str, most: int = MAX_SHOWN) -> str:
+    """A text as a message repeats it: on one line, of at most `most` characters, nothing that steers a terminal."""
+    start = " ".join(text[: 2 * most].split())
+    cut = start[: most - 3] + "..." if len(start) > most or len(text) > 2 * most else start
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in cut)
+
+
 def nearest(name: str, known: Iterable[str], count: int = 3) -> list[str]:
     """The `count` known names that look most like `name`, best first; empty when none does."""
     import difflib  # only a user who mistyped pays for it
 
+    if len(name) > MAX_SHOWN:  # no name is so long, and the comparison takes its time
+        return []
     by_fold = {candidate.casefold(): candidate for candidate in known}
     close = difflib.get_close_matches(name.casefold(), by_fold, n=count, cutoff=0.5)
     return [by_fold[match] for match in close]

@@ -10,13 +10,13 @@ DONE, WRONG_INPUT, NO, INTERRUPTED = 0, 2, 3, 130
 
 def main() -> None:
     """Run the command line on the process's arguments and exit with its status."""
-    status = INTERRUPTED
     try:
-        status = run(sys.argv[1:])
+        _end_in_order()
+        status = _flush(run(sys.argv[1:]))
     except KeyboardInterrupt:
-        pass
-    finally:
-        status = _flush(status)
+        say("interrupted")
+        _abandon(sys.stdout)
+        status = INTERRUPTED
     sys.exit(status)
 
 
@@ -36,8 +36,8 @@ def run(arguments: list[str]) -> int:
         _abandon(sys.stdout)
         return DONE
     except OSError as error:
-        place = f"{error.filename}: " if error.filename else ""
-        say(f"{place}{error.strerror or error}, expected a place that can be read or written")
+        place = error.filename or "standard output"
+        say(f"{place}: {error.strerror or error}, expected a place that can be read or written")
         _abandon(sys.stdout)
         return WRONG_INPUT
 
@@ -46,12 +46,29 @@ def say(sentence: str) -> None:
     """A note or an error, on stderr."""
     import contextlib
 
-    with contextlib.suppress(OSError, ValueError):
-        print(f"robokin: {sentence}", file=sys.stderr)
+    if sys.stderr is not None:  # it is None where the process was started without one
+        with contextlib.suppress(OSError, ValueError):
+            print(f"robokin: {sentence}", file=sys.stderr)
+
+
+def _end_in_order() -> None:
+    """Let a request to terminate end the program by way of its `finally`s, so that no temporary file stays."""
+    import signal
+
+    def end(number: int, frame: object) -> None:
+        _abandon(sys.stdout)
+        raise SystemExit(128 + number)
+
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, end)
 
 
 def _flush(status: int) -> int:
     """Write out what stdout still holds; the status if that fails."""
+    if sys.stdout is None:
+        return status
     try:
         sys.stdout.flush()
     except BrokenPipeError:
@@ -65,8 +82,13 @@ def _flush(status: int) -> int:
 
 def _abandon(stream: object) -> None:
     """Point a broken stream at nothing, so that the interpreter's own flush at exit is silent."""
+    import contextlib
     import os
 
-    devnull = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(devnull, stream.fileno())  # type: ignore[attr-defined]
-    os.close(devnull)
+    if stream is None:
+        return
+    with contextlib.suppress(OSError, ValueError):  # a stream of a program of its own has no number
+        number = stream.fileno()  # type: ignore[attr-defined]
+        devnull = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(devnull, number)
+        os.close(devnull)

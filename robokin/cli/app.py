@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import sys
 from importlib import import_module
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from robokin import __version__
-from robokin.cli import INTERRUPTED
+from robokin.cli import DONE, WRONG_INPUT
 from robokin.errors import InputError, did_you_mean
 
 COMMANDS = {
@@ -24,8 +26,70 @@ COMMANDS = {
 """Every command with its line in the overview; its module is `robokin.cli.commands.<name>_command`."""
 
 
+class Verbatim:
+    """Hands a parameter's text on as it is.
+
+    Every option here is a text, a list of texts or a flag, which the commands read themselves with
+    messages of their own. Typer 0.29 would build a pydantic validator for each of them at every start,
+    which takes longer than all the rest of `robokin fk`.
+    """
+
+    def coerce(self, value: Any, param: Any, ctx: Any) -> Any:
+        """The value as the command line gives it; a repeatable option's values as a list."""
+        if param.multiple or param.nargs == -1:
+            return list(value or ())
+        return value
+
+
+def verbatim(parameters: Any) -> Any:
+    """The parameters, their texts handed on as they are (an older Typer does so by itself)."""
+    for parameter in parameters:
+        if hasattr(parameter, "_runtime_param"):
+            parameter._runtime_param = Verbatim()
+    return parameters
+
+
+class TextCommand(TyperCommand):
+    """A command whose parameters are texts, and whose help ends with examples."""
+
+    examples: tuple[str, ...] = ()
+
+    def get_params(self, ctx: Any) -> Any:
+        """The parameters, help included."""
+        return verbatim(super().get_params(ctx))
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """What follows the command's name, as it is mostly typed."""
+        arguments = [str(param.metavar) for param in self.get_params(ctx) if param.param_type_name == "argument"]
+        return [*arguments, "[OPTIONS]"]
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """The arguments and the options."""
+        arguments, options = [], []
+        for param in self.get_params(ctx):
+            if param.param_type_name == "argument":
+                arguments.append((str(param.metavar), param.help or ""))
+            elif (record := param.get_help_record(ctx)) is not None:
+                options.append(record)
+        for title, rows in (("Arguments", arguments), ("Options", options)):
+            if rows:
+                with formatter.section(title):
+                    formatter.write_dl(rows)
+
+    def format_epilog(self, ctx: Any, formatter: Any) -> None:
+        """The examples, a line each."""
+        if self.examples:
+            with formatter.section("Examples"):
+                for example in self.examples:
+                    formatter.write(f"{'':{formatter.current_indent}}{example}\n")
+
+
 class Commands(TyperGroup):
     """The group of commands, each loaded when it is asked for."""
+
+    def get_params(self, ctx: Any) -> Any:
+        """The parameters, help included."""
+        return verbatim(super().get_params(ctx))
 
     def list_commands(self, ctx: Any) -> list[str]:
         """The names, in the order of the overview."""
@@ -48,10 +112,13 @@ class Commands(TyperGroup):
 
 
 def build(name: str, function: Any) -> Any:
-    """A command of its own from a function with Typer's annotations."""
+    """A command of its own from a function with Typer's annotations; its docstring is the help."""
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
-    app.command(name, help=function.__doc__, context_settings=CONTEXT)(function)
-    return typer.main.get_command(app)
+    text, _, examples = str(function.__doc__).partition("Examples:\n")
+    app.command(name, cls=TextCommand, help=text.rstrip(), context_settings=CONTEXT)(function)
+    command: Any = typer.main.get_command(app)
+    command.examples = tuple(line.strip() for line in examples.splitlines() if line.strip())
+    return command
 
 
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
@@ -61,7 +128,6 @@ app = typer.Typer(
     cls=Commands,
     help="Robot kinematics from a YAML file: robokin COMMAND ROBOT [options].",
     epilog="`robokin COMMAND --help` tells more. ROBOT is a name of `robokin list`, or a path to a description.",
-    no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     context_settings=CONTEXT,
@@ -84,16 +150,27 @@ def options(
 
 
 def invoke(arguments: list[str]) -> int:
-    """Run the command that the arguments name; its status."""
+    """Run the command that the arguments name; its status. Raises InputError for a usage that is wrong.
+
+    Typer's own way to run a command is not taken: it ends with status 1 at a closed pipe.
+    """
+    command: Any = typer.main.get_command(app)
+    if "_ROBOKIN_COMPLETE" in os.environ:
+        command.main(arguments, prog_name="robokin")
+    if not arguments:
+        with contextlib.redirect_stdout(sys.stderr):
+            invoke(["--help"])
+        return WRONG_INPUT
     try:
-        status = typer.main.get_command(app).main(arguments, prog_name="robokin", standalone_mode=False)
-    except typer.Abort:
-        return INTERRUPTED
+        with command.make_context("robokin", list(arguments)) as context:
+            status = command.invoke(context)
+    except typer.Exit as end:
+        return int(end.exit_code)
     except Exception as error:
-        # Typer's usage errors know how to show themselves; anything else is not for here.
-        if not hasattr(error, "exit_code") or not hasattr(error, "show"):
+        # Typer's errors know what is wrong with the usage; anything else is not for here.
+        if not hasattr(error, "format_message"):
             raise
-        sys.stdout.flush()
-        error.show()
-        return int(error.exit_code)
-    return status if isinstance(status, int) else 0
+        from robokin.cli.usage import usage_sentence
+
+        raise InputError(usage_sentence(error)) from None
+    return status if isinstance(status, int) else DONE

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.cli.output.numbers import counted
 from robokin.description.expressions import Scope, evaluate
 from robokin.description.library import load_any
 from robokin.errors import ExpressionError, InputError, did_you_mean
@@ -57,7 +58,8 @@ def parse_numbers(text: str, option: str, angles: list[bool], units: Units, what
     """
     parts = split_vector(text)
     if len(parts) != len(angles):
-        raise InputError(f"{option}: found {len(parts)} values in '{text}', expected {len(angles)}: {what}")
+        found = counted(len(parts), "value")
+        raise InputError(f"{option}: found {found} in '{text}', expected {len(angles)}: {what}")
     scope = Scope(degrees=units.degrees)
     values = np.empty(len(parts))
     for i, (part, angle) in enumerate(zip(parts, angles, strict=True)):
@@ -78,6 +80,8 @@ def parse_configuration(text: str, robot: Robot, units: Units, option: str = "--
     name = text.strip()
     if name in robot.poses:
         return in_units(robot.poses[name], joint_factors(robot, units))
+    if name.lower().endswith((".csv", ".jsonl", ".npy")):
+        raise InputError(f"{option}: found the name of a file, '{name}', expected values; --input {name} reads a file")
     if name.replace("-", "_").isidentifier() and name != "pi":
         known = list(robot.poses)
         listed = f", expected one of its poses: {', '.join(known)}" if known else ", which has none: expected values"

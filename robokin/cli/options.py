@@ -41,6 +41,10 @@ SetOption = Annotated[
 ]
 OutputOption = Annotated[
     str | None,
+    typer.Option("--output", "-o", metavar="FILE", help="Write to a file, by its ending: .csv, .jsonl or .json."),
+]
+ArrayOutputOption = Annotated[
+    str | None,
     typer.Option("--output", "-o", metavar="FILE", help="Write to a file, by its ending: .csv, .jsonl, .json or .npy."),
 ]
 AsOption = Annotated[
@@ -48,7 +52,7 @@ AsOption = Annotated[
     typer.Option(
         "--as",
         metavar="KIND",
-        help="Columns of the orientation: rpy, quaternion, euler or matrix.  [default: rpy]",
+        help="How to say the orientation: rpy, quaternion, euler (Z Y Z) or matrix.  [default: rpy]",
     ),
 ]
 

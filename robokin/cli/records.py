@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,9 @@ from robokin.spatial import (
     rpy_from_rotation,
 )
 from robokin.units import Units
+
+if TYPE_CHECKING:
+    from robokin.cli.poses import Poses
 
 Array = NDArray[np.float64]
 
@@ -56,21 +60,20 @@ def pose_table(T: Array, kind: str, units: Units) -> Array:
     return np.concatenate([T[:, :3, 3], orientation(T, kind, units)], axis=1)
 
 
-def pose_record(T: Array, units: Units) -> dict[str, Any]:
-    """A pose (4, 4), its origin in the length unit already."""
-    return {
-        "matrix": T.tolist(),
-        "position": T[:3, 3].tolist(),
-        "rpy": orientation(T, "rpy", units).tolist(),
-        "quaternion": orientation(T, "quaternion", units).tolist(),
-    }
+def pose_records(T: Array, units: Units, more: Sequence[str] = ()) -> list[dict[str, Any]]:
+    """Poses (m, 4, 4), their origins in the length unit already; `more` orientations than all have."""
+    columns = {"matrix": T.tolist(), "position": T[:, :3, 3].tolist()}
+    for kind in dict.fromkeys(["rpy", "quaternion", *more]):
+        if kind not in columns:
+            columns[kind] = orientation(T, kind, units).tolist()
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def frame_record(T: Array, units: Units) -> dict[str, Any]:
     """Everything that can be said of a transform (4, 4), its origin in the length unit already."""
     axis, angle = axis_angle_from_rotation(T[:3, :3])
     n, s, a, p = T[:3].T.tolist()
-    pose = pose_record(T, units)
+    (pose,) = pose_records(T[None], units, ["euler"])
     return {
         "matrix": pose["matrix"],
         "n": n,
@@ -79,23 +82,20 @@ def frame_record(T: Array, units: Units) -> dict[str, Any]:
         "p": p,
         "position": pose["position"],
         "rpy": pose["rpy"],
-        "euler": orientation(T, "euler", units).tolist(),
+        "euler": pose["euler"],
         "quaternion": pose["quaternion"],
-        "axis_angle": {"axis": axis.tolist(), "angle": float(angle) / units.radians},
+        "axis_angle": {"axis": (axis + 0.0).tolist(), "angle": float(angle) / units.radians + 0.0},
     }
 
 
-def configuration_record(
-    robot: Robot, units: Units, q: Array, within: bool, T: Array, frames: Array | None
-) -> dict[str, Any]:
-    """The answer of `fk` for one configuration: q (n,) and T (4, 4), frames (rows, 4, 4) in the units."""
-    record: dict[str, Any] = {
-        "robot": robot.id,
-        "units": units.as_record(),
-        "q": q.tolist(),
-        "within_limits": within,
-        "pose": pose_record(T, units),
-    }
-    if frames is not None:
-        record["frames"] = [{"name": str(i), "matrix": frame.tolist()} for i, frame in enumerate(frames, start=1)]
-    return record
+def configuration_records(robot: Robot, units: Units, poses: Poses, more: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """The answers of `fk` for a block of configurations; `more` orientations than all have."""
+    stated = units.as_record()
+    names = [str(i) for i in range(1, len(robot.rows) + 1)]
+    rows = zip(poses.q.tolist(), poses.within.tolist(), pose_records(poses.T, units, more), strict=True)
+    for i, (q, within, pose) in enumerate(rows):
+        record: dict[str, Any] = {"robot": robot.id, "units": stated, "q": q, "within_limits": within, "pose": pose}
+        if poses.frames is not None:
+            matrices = zip(names, poses.frames[i].tolist(), strict=True)
+            record["frames"] = [{"name": name, "matrix": matrix} for name, matrix in matrices]
+        yield record

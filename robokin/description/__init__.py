@@ -6,7 +6,7 @@ from pathlib import Path
 
 from robokin.description.library import library_names, load_any
 from robokin.description.read import read_file, read_text
-from robokin.errors import InputError
+from robokin.errors import InputError, shown
 from robokin.model import Robot
 
 __all__ = ["library_names", "load", "load_any", "read_file", "read_text"]
@@ -20,8 +20,17 @@ def load(name_or_path: str | Path, **parameters: float | str) -> Robot:
     Raises InputError for an unknown name or a file that cannot be read, DescriptionError with line and
     column for a wrong description.
     """
-    overrides = {name: value if isinstance(value, str) else repr(float(value)) for name, value in parameters.items()}
-    loaded = load_any(name_or_path, overrides)
+    loaded = load_any(name_or_path, {name: _expression(name, value) for name, value in parameters.items()})
     if not isinstance(loaded, Robot):
         raise InputError(f"{name_or_path} is a mechanism, expected a robot")
     return loaded
+
+
+def _expression(name: str, value: float | str) -> str:
+    """An expression for the value of a parameter."""
+    if isinstance(value, str):
+        return value
+    try:
+        return repr(float(value))
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"parameter {name}: found {shown(repr(value))}, expected a number or an expression") from None

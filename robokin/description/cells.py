@@ -16,12 +16,16 @@ from robokin.description.expressions import Scope, evaluate
 from robokin.description.schema import Fields
 from robokin.description.transforms import evaluate_transform
 from robokin.description.tree import Mapping, Mark, Node, Scalar, Sequence, describe
-from robokin.errors import DescriptionError, ExpressionError, did_you_mean, or_list
+from robokin.errors import DescriptionError, ExpressionError, did_you_mean, or_list, shown
+from robokin.spatial.rotations import ZERO_AXIS
 from robokin.units import Units
 
 Array = NDArray[np.float64]
 
 INFINITE = re.compile(r"[-+]?\.?(inf|infinity|nan)", re.IGNORECASE)
+
+NO_WORD = re.compile(r"[\x00-\x1f\x7f-\x9f\ud800-\udfff]")
+"""Characters that a quoted text can smuggle in by an escape and that no name or line of text has."""
 
 
 @dataclass(frozen=True)
@@ -43,10 +47,10 @@ def fields_of(node: Node, fields: Fields, what: str) -> dict[str, Node]:
     for name, mark in node.keys.items():
         if name not in fields:
             hint = did_you_mean(name, fields) or f", expected one of {', '.join(fields)}"
-            raise mark.error(f"found the unknown key '{name}' in {what}{hint}")
+            raise mark.error(f"found the unknown key '{shown(name)}' in {what}{hint}")
     for name, field in fields.items():
         if field.required and name not in node.entries:
-            raise node.mark.error(f"the key '{name}' is missing in {what}, expected {name}: {field.doc}")
+            raise node.mark.error(f"found no '{name}' in {what}, expected {name}: {field.doc}")
     return node.entries
 
 
@@ -54,7 +58,10 @@ def text_of(node: Node, what: str) -> str:
     """A text that is not empty."""
     if not isinstance(node, Scalar) or node.empty or not node.text.strip():
         raise node.mark.error(f"found {describe(node)}, expected {what}")
-    return " ".join(node.text.split())
+    text = " ".join(node.text.split())
+    if NO_WORD.search(text):
+        raise node.mark.error(f"found {describe(node)} with a control character, expected {what}")
+    return text
 
 
 def choice_of(node: Node, choices: tuple[str, ...], what: str) -> str:
@@ -62,7 +69,7 @@ def choice_of(node: Node, choices: tuple[str, ...], what: str) -> str:
     text = text_of(node, f"{what}: {or_list(choices)}")
     if text not in choices:
         hint = did_you_mean(text, choices)
-        raise node.mark.error(f"found '{text}' as {what}, expected {or_list(choices)}{hint}")
+        raise node.mark.error(f"found '{shown(text)}' as {what}, expected {or_list(choices)}{hint}")
     return text
 
 
@@ -71,7 +78,7 @@ def expression_text(node: Node, what: str) -> str:
     if not isinstance(node, Scalar) or node.empty:
         raise node.mark.error(f"found {describe(node)}, expected {what}: a number or an expression")
     if INFINITE.fullmatch(node.text.strip()):
-        raise node.mark.error(f"found '{node.text}' as {what}, expected a finite number")
+        raise node.mark.error(f"found {describe(node)} as {what}, expected a finite number")
     return node.text
 
 
@@ -101,17 +108,19 @@ def list_of(node: Node, what: str, length: int | tuple[int, int] | None = None) 
     return node.items
 
 
-def vector_of(node: Node, context: Context, what: str, *, direction: bool) -> Array:
-    """A point (3,) [m] or a unit direction (3,); two numbers are taken as x and y."""
-    items = list_of(node, what, (2, 3))
+def vector_of(node: Node, context: Context, what: str, *, direction: bool, plane: bool = False) -> Array:
+    """A point (3,) [m] or a unit direction (3,); in the plane two numbers are taken as x and y."""
+    items = list_of(node, what, (2, 3) if plane else 3)
     numbers = [raw_number_of(item, context.scope, what) for item in items]
     vector = np.array([*numbers, 0.0][:3])
     if not direction:
         return vector * context.units.metres
-    length = float(np.linalg.norm(vector))
-    if length < 1e-12:
+    greatest = float(np.max(np.abs(vector)))
+    if greatest < ZERO_AXIS:
         raise node.mark.error(f"found zero as {what}, expected a direction")
-    return vector / length
+    vector /= greatest  # the squares of great numbers would not be finite
+    vector /= np.linalg.norm(vector)
+    return vector
 
 
 def transform_of(node: Node, context: Context, what: str) -> Array:
@@ -128,12 +137,12 @@ def transform_of(node: Node, context: Context, what: str) -> Array:
 
 def names_of(node: Node, what: str) -> tuple[str, ...]:
     """A list of different names."""
-    names: list[str] = []
+    names: dict[str, None] = {}
     for item in list_of(node, what):
         name = text_of(item, "a name")
         if name in names:
-            raise item.mark.error(f"found '{name}' twice in {what}, expected each name once")
-        names.append(name)
+            raise item.mark.error(f"found '{shown(name)}' twice in {what}, expected each name once")
+        names[name] = None
     return tuple(names)
 
 

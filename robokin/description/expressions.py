@@ -15,10 +15,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from robokin.errors import ExpressionError, did_you_mean
+from robokin.errors import ExpressionError, did_you_mean, shown
 
 MAX_LENGTH = 10_000
 """Characters of an expression; a 4×4 matrix of them needs a few hundred."""
@@ -27,8 +27,12 @@ MAX_NESTING = 50
 """Levels of parentheses."""
 
 TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![\w.])|(?P<name>[^\W\d]\w*'?)|(?P<symbol>\*\*|[-+*/(),\[\]]))"
+    r"(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(?![\w.])"
+    r"|(?P<name>[^\W\d]\w*['′’]*)|(?P<symbol>\*\*|[-+*/(),\[\]])"
 )
+SPACE = re.compile(r"\s*")
+NAME = re.compile(r"[^\W\d]\w*")
+"""What a parameter may be called: what `TOKEN` reads as a name, without a prime."""
 
 LOOKALIKES = {
     "−": "-",
@@ -62,7 +66,7 @@ class Scope:
     """
 
     degrees: bool = False
-    names: tuple[str, ...] = ()
+    names: Collection[str] = ()
     lookup: Callable[[str], Value] | None = None
 
 
@@ -78,19 +82,22 @@ class Token:
 def tokenize(text: str) -> list[Token]:
     """The tokens of an expression, an `end` last. Raises ExpressionError at what is none."""
     if len(text) > MAX_LENGTH:
-        raise ExpressionError(f"an expression of {len(text)} characters, expected at most {MAX_LENGTH}")
+        raise ExpressionError(f"found an expression of {len(text)} characters, expected at most {MAX_LENGTH}")
     tokens: list[Token] = []
-    position = 0
-    while text[position:].strip():
+    position = _after_space(text, 0)
+    while position < len(text):
         match = TOKEN.match(text, position)
-        if match is None or match.end() == position:
-            at = position + len(text[position:]) - len(text[position:].lstrip())
-            raise _unreadable(text, at)
-        kind = match.lastgroup or ""
-        tokens.append(Token(kind, match[kind], match.start(kind)))
-        position = match.end()
+        if match is None:
+            raise _unreadable(text, position)
+        tokens.append(Token(match.lastgroup or "", match[0], position))
+        position = _after_space(text, match.end())
     tokens.append(Token("end", "", len(text)))
     return tokens
+
+
+def _after_space(text: str, position: int) -> int:
+    match = SPACE.match(text, position)
+    return match.end() if match else position
 
 
 def _unreadable(text: str, at: int) -> ExpressionError:
@@ -110,26 +117,26 @@ def _unreadable(text: str, at: int) -> ExpressionError:
 
 def _sine_of_degrees(x: float) -> float:
     """sin of x degrees, exact where it is 0, ±0.5 or ±1 (the sine of a rounded pi/6 is not 0.5)."""
-    r = math.fmod(x, 360.0)
-    if r < 0.0:
-        r += 360.0
+    sign = math.copysign(1.0, x)
+    r = math.fmod(abs(x), 360.0)  # this and both differences below are exact
     if r >= 180.0:
-        return -_sine_of_degrees(r - 180.0) if r < 360.0 else 0.0
+        r, sign = r - 180.0, -sign
     if r > 90.0:
         r = 180.0 - r
     exact = {0.0: 0.0, 30.0: 0.5, 90.0: 1.0}
-    return exact[r] if r in exact else math.sin(math.radians(r))
+    sine = exact[r] if r in exact else math.sin(math.radians(r))
+    return sign * sine if sine else 0.0
 
 
 def _cosine_of_degrees(x: float) -> float:
-    return _sine_of_degrees(90.0 - math.fmod(x, 360.0))
+    return _sine_of_degrees(90.0 - math.fmod(abs(x), 360.0))
 
 
 def _tangent_of_degrees(x: float) -> float:
     r = math.fmod(x, 180.0)
     if abs(r) in (45.0, 135.0):
         return math.copysign(1.0, r) if abs(r) == 45.0 else -math.copysign(1.0, r)
-    return _sine_of_degrees(x) / _cosine_of_degrees(x)
+    return _sine_of_degrees(x) / _cosine_of_degrees(x) + 0.0  # no negative zero
 
 
 Function = Callable[..., float]
@@ -150,13 +157,21 @@ IN_DEGREES: dict[str, Function] = {
 }
 
 PLAIN: dict[str, Function] = {
-    "sqrt": math.sqrt, "abs": abs, "min": min, "max": max, "deg": math.degrees, "rad": math.radians,
-}  # fmt: skip
+    "sqrt": math.sqrt,
+    "abs": abs,
+    "min": lambda *values: min(values),  # of one value too
+    "max": lambda *values: max(values),
+    "deg": math.degrees,
+    "rad": math.radians,
+}
 
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "abs", "min", "max", "deg", "rad")
 TAKES_ANGLE = ("sin", "cos", "tan")
-ARGUMENTS = {"atan2": (2, 2), "min": (1, 100), "max": (1, 100)}
+ARGUMENTS = {"atan2": (2, 2), "min": (1, MAX_LENGTH), "max": (1, MAX_LENGTH)}
 """Least and greatest number of arguments, where it is not one."""
+
+RESERVED = ("pi", *FUNCTIONS, "nan", "inf", "infinity", *LOOKALIKES)
+"""Names that no parameter may have, in lower case: they mean something already, or look as if they did."""
 
 
 class Parser:
@@ -183,7 +198,7 @@ class Parser:
 
     def found(self) -> str:
         """The next token, as a message says it."""
-        return f"'{self.token.text}'" if self.token.kind != "end" else "the end"
+        return f"'{shown(self.token.text)}'" if self.token.kind != "end" else "the end"
 
     def accept(self, symbol: str) -> bool:
         """Take the next token if it is this symbol."""
@@ -201,7 +216,7 @@ class Parser:
         """A sum of products."""
         self.depth += 1
         if self.depth > MAX_NESTING:
-            raise self.error(f"nested more than {MAX_NESTING} levels deep, expected a simpler expression")
+            raise self.error(f"found more than {MAX_NESTING} levels of nesting, expected a simpler expression")
         value = self.product()
         while self.token.text in ("+", "-") and self.token.kind == "symbol":
             sign = 1.0 if self.accept("+") else -1.0
@@ -220,7 +235,7 @@ class Parser:
             self.index += 1
             right = self.signed()
             if token.text == "/" and right.number == 0.0:
-                raise self.error("a division by zero, expected a number", token)
+                raise self.error("found a division by zero, expected a divisor other than zero", token)
             quotient = token.text == "/"
             number = value.number / right.number if quotient else value.number * right.number
             value = self.finite(number, value, right)
@@ -243,7 +258,7 @@ class Parser:
             return base
         self.depth += 1
         if self.depth > MAX_NESTING:
-            raise self.error("too many powers, expected a simpler expression")
+            raise self.error(f"found more than {MAX_NESTING} levels of nesting, expected a simpler expression")
         exponent = self.signed()
         self.depth -= 1
         return self.finite(self.call(math.pow, (base.number, exponent.number), "**", token), base, exponent)
@@ -281,25 +296,27 @@ class Parser:
         hint = did_you_mean(token.text, known)
         if not hint:
             hint = f", expected {'pi' if len(known) == 1 else 'one of ' + ', '.join(known[:12])} or a number"
-        raise self.error(f"found the unknown name '{token.text}'{hint}", token)
+        raise self.error(f"found the unknown name '{shown(token.text)}'{hint}", token)
 
     def function(self, token: Token) -> Value:
         """The value of a call."""
         name = token.text
         if name not in FUNCTIONS:
             hint = did_you_mean(name, FUNCTIONS) or f", expected one of {', '.join(FUNCTIONS)}"
-            raise self.error(f"found the unknown function '{name}'{hint}", token)
+            raise self.error(f"found the unknown function '{shown(name)}'{hint}", token)
         self.expect("(")
+        start = self.token.position
         arguments = [self.number()]
         while self.accept(","):
             arguments.append(self.number())
+        stop = self.token.position
         self.expect(")")
         least, most = ARGUMENTS.get(name, (1, 1))
         if not least <= len(arguments) <= most:
             expected = str(least) if least == most else f"at least {least}"
-            raise self.error(f"{name}() with {len(arguments)} arguments, expected {expected}", token)
+            raise self.error(f"found {name}() with {len(arguments)} arguments, expected {expected}", token)
         if name in TAKES_ANGLE and self.scope.degrees and arguments[0].mentions_pi:
-            raise pi_in_degrees(self.text, token.position)
+            raise pi_in_degrees(self.text[start:stop], self.text, start)
         table = PLAIN if name in PLAIN else IN_DEGREES if self.scope.degrees else IN_RADIANS
         number = self.call(table[name], tuple(value.number for value in arguments), f"{name}()", token)
         if name == "deg":
@@ -311,15 +328,17 @@ class Parser:
         try:
             return float(function(*arguments))
         except (ValueError, ZeroDivisionError):
-            shown = ", ".join(f"{argument:g}" for argument in arguments)
-            raise self.error(f"{name} has no value at {shown}, expected an argument where it has one", token) from None
+            where = ", ".join(f"{argument:g}" for argument in arguments)
+            raise self.error(f"{name} has no value at {where}, expected an argument where it has one", token) from None
         except OverflowError:
-            raise self.error("the result is too large, expected a finite number", token) from None
+            raise self.error("found a result that is too large, expected a finite number", token) from None
 
     def finite(self, number: float, *origins: Value) -> Value:
         """A Value that is finite and remembers pi from where it came."""
         if not math.isfinite(number):
-            raise self.error("the result is too large, expected a finite number", self.tokens[max(self.index - 1, 0)])
+            raise self.error(
+                "found a result that is too large, expected a finite number", self.tokens[max(self.index - 1, 0)]
+            )
         return Value(number, any(origin.mentions_pi for origin in origins))
 
     def angle(self) -> float:
@@ -327,7 +346,7 @@ class Parser:
         start = self.token
         value = self.number()
         if value.mentions_pi and self.scope.degrees:
-            raise pi_in_degrees(self.text[start.position : self.token.position].strip(" ,"), start.position)
+            raise pi_in_degrees(self.text[start.position : self.token.position], self.text, start.position)
         return value.number
 
     def end(self) -> None:
@@ -336,12 +355,12 @@ class Parser:
             raise self.error(f"found {self.found()}, expected the end of the expression")
 
 
-def pi_in_degrees(text: str, position: int) -> ExpressionError:
-    """The error for an angle in degrees that mentions pi."""
-    shown = text.strip()
+def pi_in_degrees(angle: str, text: str, position: int) -> ExpressionError:
+    """The error for an angle in degrees that mentions pi, at a position of a text."""
+    angle = shown(angle)
     return ExpressionError(
-        f"found pi in an angle that is in degrees ('{shown}'), expected degrees: "
-        f"write deg({shown}), or the number of degrees, or state angles in rad",
+        f"found pi in an angle that is in degrees ('{angle}'), expected degrees: "
+        f"write deg({angle}), or the number of degrees, or state angles in rad",
         text,
         position,
     )
@@ -359,7 +378,7 @@ def evaluate(text: str, scope: Scope, *, angle: bool = False) -> Value:
     value = parser.number()
     parser.end()
     if angle and value.mentions_pi and scope.degrees:
-        raise pi_in_degrees(text, 0)
+        raise pi_in_degrees(text, text, 0)
     return value
 
 
@@ -367,29 +386,58 @@ def evaluate(text: str, scope: Scope, *, angle: bool = False) -> Value:
 class Parameters:
     """Named expressions that may refer to each other in any order; evaluated when asked for.
 
-    `texts` maps a name to its expression; `overrides` replaces some.
+    `texts` maps a name to its expression.
     """
 
     texts: Mapping[str, str]
     degrees: bool
     known: dict[str, Value] = field(default_factory=dict)
-    open: list[str] = field(default_factory=list)
 
     def scope(self) -> Scope:
         """A scope in which these parameters can be named."""
-        return Scope(self.degrees, tuple(self.texts), self.value)
+        return Scope(self.degrees, self.texts.keys(), self.value)
 
     def value(self, name: str) -> Value:
-        """The value of one parameter. Raises ExpressionError, also for a circle."""
+        """The value of one parameter. Raises ExpressionError, also for a circle.
+
+        What it refers to is evaluated first, so that a long chain of parameters needs no deep recursion
+        and an error is that of the parameter where it stands (the error's `parameter`).
+        """
         if name in self.known:
             return self.known[name]
-        if name in self.open or len(self.open) > MAX_NESTING:
-            circle = " -> ".join([*self.open[self.open.index(name) if name in self.open else 0 :], name])
-            raise ExpressionError(f"the parameters refer to each other in a circle: {circle}")
-        self.open.append(name)
+        scope = self.scope()
+        path: dict[str, Iterator[str]] = {name: self._named(name)}
+        while path:
+            last = next(reversed(path))
+            needed = next((other for other in path[last] if other not in self.known), None)
+            if needed is None:
+                try:
+                    self.known[last] = evaluate(self.texts[last], scope)
+                except ExpressionError as error:
+                    error.parameter = last
+                    raise
+                del path[last]
+            elif needed in path:
+                raise _circle([*path][[*path].index(needed) :])
+            else:
+                path[needed] = self._named(needed)
+        return self.known[name]
+
+    def _named(self, name: str) -> Iterator[str]:
+        """The parameters that one refers to."""
         try:
-            value = evaluate(self.texts[name], self.scope())
-        finally:
-            self.open.pop()
-        self.known[name] = value
-        return value
+            tokens = tokenize(self.texts[name])
+        except ExpressionError as error:
+            error.parameter = name
+            raise
+        return (token.text for token in tokens if token.kind == "name" and token.text in self.texts)
+
+
+def _circle(names: list[str]) -> ExpressionError:
+    """The error for parameters that refer to each other, the last to the first."""
+    few = names if len(names) <= 10 else [*names[:9], "…", names[-1]]
+    return ExpressionError(
+        f"found parameters that refer to each other in a circle ({' -> '.join([*few, names[0]])}), "
+        "expected a number in one of them",
+        parameter=names[0],
+    )

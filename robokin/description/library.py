@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from robokin.description.read import read_file
-from robokin.errors import InputError, nearest, or_list
+from robokin.errors import InputError, nearest, or_list, shown
 from robokin.model import Mechanism, Robot
 
 
@@ -40,7 +40,8 @@ def load_any(name_or_path: str | Path, overrides: Mapping[str, str] | None = Non
     if isinstance(name_or_path, Path) or is_path(name):
         return read_file(Path(name_or_path), overrides)
     path = library_folder() / f"{name}.yaml"
-    if not name or not path.is_file():
+    # os.path.isfile takes what no file can be called (too long, a null character) for a no.
+    if not name or not os.path.isfile(path):  # noqa: PTH113
         raise unknown_name(name)
     return read_file(path, overrides, id=name)
 
@@ -49,5 +50,5 @@ def unknown_name(name: str) -> InputError:
     """The error for a name that is not in the library."""
     close = nearest(name, library_names())
     expected = f"did you mean {or_list(close)}?" if close else "`robokin list` shows what there is"
-    in_folder = " (a file here? write ./" + name + ")" if name and Path(name).is_file() else ""
-    return InputError(f"there is no robot or mechanism named '{name}' in the library{in_folder}; {expected}")
+    in_folder = f" (a file here? write ./{name})" if name and os.path.isfile(name) else ""  # noqa: PTH113
+    return InputError(f"there is no robot or mechanism named '{shown(name)}' in the library{in_folder}; {expected}")

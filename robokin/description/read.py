@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robokin.description.cells import Context, choice_of, expression_text, fields_of, text_of
-from robokin.description.expressions import FUNCTIONS, Parameters
+from robokin.description.expressions import NAME, RESERVED, Parameters
 from robokin.description.schema import MECHANISM, ROBOT, UNITS, VERSION
 from robokin.description.tree import Mapping, Mark, Node, Scalar, describe, read_tree
-from robokin.errors import DescriptionError, ExpressionError, InputError, did_you_mean
+from robokin.errors import DescriptionError, ExpressionError, InputError, did_you_mean, nearest, shown
 from robokin.model import Mechanism, Robot
 from robokin.units import Units
 
@@ -36,54 +36,61 @@ def read_file(path: Path, overrides: MappingType[str, str] | None = None, id: st
     `overrides` replaces parameters by expressions in the file's units. Raises DescriptionError with
     line and column when the description is wrong, InputError when the file cannot be read.
     """
-    shown = str(path)
+    place = str(path)
     try:
         with path.open("rb") as file:
             data = file.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise InputError(f"{shown}: no such file, expected a description (.yaml)") from None
+        raise InputError(f"{place}: no such file, expected a description (.yaml)") from None
     except IsADirectoryError:
-        raise InputError(f"{shown}: found a directory, expected a description (.yaml)") from None
+        raise InputError(f"{place}: found a directory, expected a description (.yaml)") from None
     except OSError as error:
-        raise InputError(f"{shown}: cannot be read ({error.strerror}), expected a description (.yaml)") from None
+        raise InputError(f"{place}: cannot be read ({error.strerror}), expected a description (.yaml)") from None
+    except ValueError:  # a path with a null character
+        raise InputError(f"{shown(place)}: is no path, expected that of a description (.yaml)") from None
     if len(data) > MAX_BYTES:
-        raise DescriptionError("found a file over 1 MiB, expected a description: a page of text", shown)
+        raise DescriptionError("found a file over 1 MiB, expected a description: a page of text", place, 1, 1)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise DescriptionError("found bytes that are no text, expected YAML in UTF-8", shown, line) from None
-    return read_text(text, shown, overrides, id or path.stem)
+        before = error.object[: error.start]  # without the byte order mark
+        line, column = before.count(b"\n") + 1, len(before[before.rfind(b"\n") + 1 :].decode("utf-8")) + 1
+        raise DescriptionError("found bytes that are no text, expected YAML in UTF-8", place, line, column) from None
+    return read_text(text, place, overrides, id or path.stem)
 
 
 def read_text(
     text: str, file: str = "description", overrides: MappingType[str, str] | None = None, id: str = ""
 ) -> Robot | Mechanism:
     """The robot or mechanism that a text describes; `file` is the name that errors give it."""
-    from robokin.description.mechanisms import read_mechanism
-    from robokin.description.robots import read_robot
-
-    if "\0" in text:
-        raise DescriptionError("found bytes that are no text, expected YAML in UTF-8", file, 1)
     root = read_tree(text, file)
     if not isinstance(root, Mapping):
         raise root.mark.error(f"found {describe(root)}, expected a description: `robokin: 1`, `name: …`, `joints: …`")
     if not root.entries:
-        raise root.mark.error("the file is empty, expected a description: `robokin: 1`, `name: …`")
+        raise root.mark.error("found nothing in the file, expected a description: `robokin: 1`, `name: …`")
     mechanism = "links" in root.entries or "space" in root.entries
     _check_version(root)
     fields = fields_of(root, MECHANISM if mechanism else ROBOT, "a mechanism" if mechanism else "a robot")
     head = _head(fields, overrides or {}, id, file)
-    return read_mechanism(fields, head) if mechanism else read_robot(fields, head)
+    # Only the reader that is needed is imported: it is part of the time that a command takes to start.
+    if mechanism:
+        from robokin.description.mechanisms import read_mechanism
+
+        return read_mechanism(fields, head)
+    from robokin.description.robots import read_robot
+
+    return read_robot(fields, head)
 
 
 def _check_version(root: Mapping) -> None:
     node = root.entries.get("robokin")
     if node is None:
-        raise root.mark.error(f"the key 'robokin' is missing, expected `robokin: {VERSION}`, the format's version")
+        for near in nearest("robokin", root.entries, 1):
+            raise root.keys[near].error(f"found the unknown key '{near}', expected `robokin: {VERSION}`")
+        raise root.mark.error(f"found no key 'robokin', expected `robokin: {VERSION}`, the format's version")
     text = text_of(node, "the format's version")
     if text != str(VERSION):
-        raise node.mark.error(f"found format version '{text}', expected {VERSION}: this robokin reads no other")
+        raise node.mark.error(f"found format version '{shown(text)}', expected {VERSION}: this robokin reads no other")
 
 
 def _head(fields: dict[str, Node], overrides: MappingType[str, str], id: str, file: str) -> Head:
@@ -107,28 +114,31 @@ def _units(node: Node | None) -> Units:
 
 def _parameters(node: Node | None, units: Units, overrides: MappingType[str, str], file: str) -> Parameters:
     given: dict[str, Node] = {}
+    keys: dict[str, Mark] = {}
     if node is not None and not (isinstance(node, Scalar) and node.empty):
         if not isinstance(node, Mapping):
             raise node.mark.error(f"found {describe(node)}, expected parameters: a mapping of names to numbers")
-        given = node.entries
+        given, keys = node.entries, node.keys
     texts: dict[str, str] = {}
     for name, value in given.items():
-        mark: Mark = node.keys[name] if isinstance(node, Mapping) else value.mark
-        if not name.isidentifier():
-            raise mark.error(f"found the parameter '{name}', expected a name of letters, digits and _")
-        if name == "pi" or name in FUNCTIONS:
-            raise mark.error(f"found the parameter '{name}', expected another name: that one has a meaning already")
+        if name.lower() in RESERVED:
+            raise keys[name].error(
+                f"found the parameter '{name}', expected another name: this one has a meaning already"
+            )
+        if not NAME.fullmatch(name):
+            raise keys[name].error(f"found the parameter '{shown(name)}', expected a name of letters, digits and _")
         texts[name] = expression_text(value, f"parameter {name}")
     for name in overrides:
         if name not in texts:
-            known = f", expected one of {', '.join(texts)}" if texts else ": it has none"
-            raise InputError(f"{file} has no parameter '{name}'{did_you_mean(name, texts) or known}")
+            known = f", expected one of {', '.join([*texts][:12])}" if texts else ": it has none"
+            raise InputError(f"{file} has no parameter '{shown(name)}'{did_you_mean(name, texts) or known}")
     parameters = Parameters({**texts, **overrides}, units.degrees)
     for name in texts:
         try:
             parameters.value(name)
         except ExpressionError as error:
-            if name in overrides:
-                raise InputError(f"parameter {name}={overrides[name]}: {error}") from None
-            raise given[name].mark.error(f"parameter {name}: {error}") from None
+            wrong = error.parameter
+            if wrong in overrides:
+                raise InputError(f"parameter {wrong}={shown(overrides[wrong])}: {error}") from None
+            raise given[wrong].mark.error(f"parameter {wrong}: {error}") from None
     return parameters

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping as MappingType
 
 import numpy as np
@@ -18,8 +19,10 @@ from robokin.description.cells import (
     vector_of,
 )
 from robokin.description.read import Head
-from robokin.description.schema import CONVENTIONS, DH_ROW, FRAME_ROW, ROW_TYPES, TYPE_LETTERS
+from robokin.description.schema import CONVENTIONS, DH_ROW, FRAME_ROW, MAX_ROWS, ROW_TYPES, TYPE_LETTERS
+from robokin.description.transforms import PRIMES
 from robokin.description.tree import Mapping, Mark, Node, Scalar, Sequence, describe
+from robokin.errors import shown
 from robokin.model import Joint, JointType, Robot
 
 Array = NDArray[np.float64]
@@ -27,8 +30,8 @@ Array = NDArray[np.float64]
 VARIABLE = {JointType.REVOLUTE: "theta", JointType.PRISMATIC: "d"}
 """The cell that the joint variable stands in."""
 
-MAX_ROWS = 1000
-"""Rows of a table; the human body has 21."""
+ZERO = re.compile(r"[-+]?(0+\.?0*|\.0+)")
+"""The ways to write a cell of a column that says nothing."""
 
 
 def read_robot(fields: MappingType[str, Node], head: Head) -> Robot:
@@ -67,25 +70,42 @@ def _rows(node: Node, convention: str, context: Context) -> tuple[Joint, ...]:
         if isinstance(row, Mapping):
             for name, mark in row.keys.items():
                 if name in other and name not in known:
-                    raise mark.error(
-                        f"found '{name}' in a row of the {convention} convention, expected {', '.join(known)}"
-                    )
+                    raise mark.error(_other_convention(name, f"row {i}", convention, known))
         joint = _row(fields_of(row, known, f"row {i}"), row.mark, i, convention, context)
         if joint.name in names:
-            raise row.mark.error(f"row {i} is named '{joint.name}' like row {names[joint.name]}, expected another name")
+            raise row.mark.error(
+                f"found the name '{shown(joint.name)}' of row {i} on row {names[joint.name]} too, expected another name"
+            )
         names[joint.name] = i
         joints.append(joint)
     return tuple(joints)
 
 
+def _other_convention(name: str, where: str, convention: str, known: MappingType[str, object]) -> str:
+    """The message for a cell that belongs to the other kind of table."""
+    right = "standard or modified" if convention == "frames" else "frames"
+    return (
+        f"found '{name}' in {where} of the {convention} convention, expected one of {', '.join(known)}, "
+        f"or `convention: {right}`"
+    )
+
+
 def _rows_of_columns(node: Mapping, convention: str) -> list[Node]:
     """One mapping a row, from a mapping of columns."""
     known = FRAME_ROW if convention == "frames" else DH_ROW
+    other = DH_ROW if convention == "frames" else FRAME_ROW
+    for name, mark in node.keys.items():
+        if name in other and name not in known:
+            raise mark.error(_other_convention(name, "the joints' columns", convention, known))
     columns = fields_of(node, known, "the joints' columns")
     types = columns["type"]
     if isinstance(types, Scalar):
-        letters = types.text.strip()
-        kinds: list[Node] = [Scalar(letter, types.mark) for letter in letters]
+        start = types.mark
+        kinds: list[Node] = [
+            Scalar(letter, Mark(start.file, start.line, start.column + i + types.quoted))
+            for i, letter in enumerate(types.text)
+            if not letter.isspace()
+        ]
     else:
         kinds = list_of(types, "the joints' types")
     rows: list[Node] = []
@@ -99,22 +119,23 @@ def _rows_of_columns(node: Mapping, convention: str) -> list[Node]:
                 raise column.mark.error(
                     f"found {len(cells)} values in the column {name}, expected {len(kinds)}: one for each type"
                 )
-            if not _left_out(cells[i], name, kind):
+            if not _left_out(cells[i], name, _row_type(kind)):
                 row.entries[name] = cells[i]
                 row.keys[name] = cells[i].mark
         rows.append(row)
     return rows
 
 
-def _left_out(cell: Node, column: str, kind: Node) -> bool:
-    """Whether a column's cell says nothing: it is empty, or 0 where the variable stands.
+def _left_out(cell: Node, column: str, kind: JointType) -> bool:
+    """Whether a column's cell says nothing: it is empty, or 0 where the row form has no cell.
 
-    A column has a cell for every row, so also for the ones that the row form would leave out.
+    A column has a cell for every row, so also for the ones that the row form would leave out: theta of
+    a revolute and d of a prismatic row, where the variable stands, and the offset of a fixed one.
     """
     if not isinstance(cell, Scalar):
         return False
-    variable = isinstance(kind, Scalar) and VARIABLE.get(_row_type(kind)) == column
-    return cell.empty or (variable and cell.text in ("0", "0.0"))
+    none_due = column == ("offset" if kind is JointType.FIXED else VARIABLE[kind])
+    return cell.empty or (none_due and ZERO.fullmatch(cell.text.strip()) is not None)
 
 
 def _row_type(node: Node) -> JointType:
@@ -177,11 +198,11 @@ def _limits(node: Node, angle: bool, where: str, context: Context) -> tuple[floa
 
 def _axis(node: Node, where: str, context: Context) -> Array:
     if isinstance(node, Scalar):
-        letter = node.text.lower().rstrip("'")
+        letter = node.text.strip().lower().rstrip(PRIMES)
         if letter not in ("x", "y", "z"):
             raise node.mark.error(f"found {describe(node)} as the axis {where}, expected x, y, z or [x, y, z]")
         return np.array([float(letter == name) for name in "xyz"])
-    if isinstance(node, Sequence) and len(node.items) != 3:
+    if not isinstance(node, Sequence) or len(node.items) != 3:
         raise node.mark.error(f"found {describe(node)} as the axis {where}, expected x, y, z or [x, y, z]")
     return vector_of(node, context, f"the axis {where}", direction=True)
 
@@ -192,12 +213,12 @@ def _poses(node: Node, joints: list[Joint], context: Context) -> dict[str, Array
     poses: dict[str, Array] = {}
     for name, values in node.entries.items():
         if not name.replace("-", "_").isidentifier():
-            raise node.keys[name].error(f"found the pose '{name}', expected a name of letters, digits, - and _")
-        what = f"pose {name}"
+            raise node.keys[name].error(f"found the pose '{shown(name)}', expected a name of letters, digits, - and _")
+        what = f"the pose {shown(name)}"
         items = list_of(values, what)
         if len(items) != len(joints):
             raise values.mark.error(
-                f"found {len(items)} values in the pose {name}, expected {len(joints)}: one for each joint"
+                f"found {len(items)} values in the pose {shown(name)}, expected {len(joints)}: one for each joint"
             )
         poses[name] = np.array(
             [

@@ -10,6 +10,9 @@ from robokin.units import METRES, RADIANS
 VERSION = 1
 """The version of the format that this robokin reads."""
 
+MAX_ROWS = 1000
+"""Rows of a table, links or joints of a mechanism; the human body has 21 rows."""
+
 
 @dataclass(frozen=True)
 class Field:
@@ -103,20 +106,22 @@ def json_schema() -> dict[str, Any]:
     """The format as a JSON Schema (draft 2020-12), for editors that complete and check YAML."""
     number = {"anyOf": [{"type": "number"}, {"type": "string", "description": "an expression such as l1/2"}]}
     numbers: dict[str, Any] = {"type": "array", "items": {"$ref": "#/$defs/number"}}
+    # An editor's YAML makes a number of the name 1, and null of an empty value; the reader takes both.
+    text = {"type": ["string", "number"]}
     columns = {
         name: {"type": "array"} for name in (*DH_ROW, *FRAME_ROW) if name != "type"
     } | {"type": {"type": ["string", "array"], "description": "one letter a row, such as RRPRRR"}}  # fmt: skip
     definitions: dict[str, Any] = {
         "version": {"const": VERSION},
-        "text": {"type": "string"},
+        "text": text,
         "flag": {"type": "boolean"},
         "number": number,
-        "transform": {"type": "string", "description": "such as Trans(0, 0, 660) Rot(z, 90)"},
+        "transform": {"type": ["string", "null"], "description": "such as Trans(0, 0, 660) Rot(z, 90)"},
         "units": _object(UNITS),
-        "parameters": {"type": "object", "additionalProperties": {"$ref": "#/$defs/number"}},
+        "parameters": {"type": ["object", "null"], "additionalProperties": {"$ref": "#/$defs/number"}},
         "poses": {"type": "object", "additionalProperties": numbers},
         "limits": {**numbers, "minItems": 2, "maxItems": 2},
-        "names": {"type": "array", "items": {"type": "string"}, "minItems": 1},
+        "names": {"type": "array", "items": text, "minItems": 2},
         "vector": {**numbers, "minItems": 2, "maxItems": 3},
         "point": {**numbers, "minItems": 2, "maxItems": 3},
         "vectors": {"type": "array", "items": {"$ref": "#/$defs/vector"}, "minItems": 2, "maxItems": 2},

@@ -9,14 +9,15 @@ of the place where the expression stands; the result is in metres.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.description.expressions import Parser, Scope
-from robokin.errors import ExpressionError, did_you_mean
+from robokin.description.expressions import MAX_NESTING, Parser, Scope
+from robokin.errors import ExpressionError, did_you_mean, shown
 from robokin.kinematics.dh import modified_dh, standard_dh
 from robokin.spatial import (
     invert,
@@ -29,6 +30,7 @@ from robokin.spatial import (
     transform,
     translation_transform,
 )
+from robokin.spatial.rotations import ZERO_AXIS
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -50,6 +52,9 @@ DIGITS_LOST = 1e-3
 """A matrix or quaternion this near to a rotation is one whose digits were cut in print (four digits leave
 1e-4); the nearest rotation is taken. Beyond, it is something else and is refused."""
 
+PRIMES = "'′’"
+"""What may follow the letter of an axis, as often as a lecture writes it: Rot(z'', 90)."""
+
 ROUNDING = 1e-12
 """A matrix this near to a rotation is taken as it stands."""
 
@@ -70,8 +75,14 @@ class Reader:
 
     def whole(self) -> Array:
         """The transform (4, 4) of the whole text [m]."""
-        T = self.steps()
-        self.parser.end()
+        with np.errstate(all="ignore"):  # what overflows is refused below
+            T = self.steps()
+        if self.parser.token.kind != "end":
+            raise self.parser.error(
+                f"found {self.parser.found()}, expected a step such as {STEPS['trans']}, or the end"
+            )
+        if not np.all(np.isfinite(T)):
+            raise ExpressionError("found a result that is too large, expected finite numbers", self.text)
         return T
 
     def steps(self) -> Array:
@@ -79,8 +90,8 @@ class Reader:
         T = np.eye(4)
         parser = self.parser
         parser.depth += 1
-        if parser.depth > 20:
-            raise parser.error("nested too deeply, expected a plain product of steps")
+        if parser.depth > MAX_NESTING:
+            raise parser.error(f"found more than {MAX_NESTING} levels of nesting, expected a plain product of steps")
         while parser.token.kind == "name":
             T = T @ self.step()
             if parser.token.text == "*":
@@ -98,7 +109,7 @@ class Reader:
         if name not in STEPS:
             hint = did_you_mean(token.text, [form.split("(")[0] for form in STEPS.values()])
             forms = ", ".join(form.split("(")[0] for form in STEPS.values())
-            raise parser.error(f"found the unknown step '{token.text}'{hint or f', expected one of {forms}'}")
+            raise parser.error(f"found the unknown step '{shown(token.text)}'{hint or f', expected one of {forms}'}")
         parser.index += 1
         if not parser.accept("("):
             raise parser.error(f"found {parser.found()} after '{token.text}', expected {STEPS[name]}")
@@ -141,7 +152,7 @@ class Reader:
 
     def _axis(self) -> list[float]:
         parser = self.parser
-        letter = parser.token.text.lower().rstrip("'")
+        letter = parser.token.text.lower().rstrip(PRIMES)
         if parser.token.kind == "name" and letter in ("x", "y", "z"):
             parser.index += 1
             return [float(letter == name) for name in "xyz"]
@@ -150,9 +161,10 @@ class Reader:
             raise parser.error(f"found {parser.found()} as the axis, expected x, y, z or [x, y, z]")
         axis = self._numbers("rot", "ratio", "ratio", "ratio")
         parser.expect("]")
-        if max(abs(part) for part in axis) < 1e-12:
-            raise parser.error("the axis is zero, expected a direction", start)
-        return axis
+        greatest = max(abs(part) for part in axis)
+        if greatest < ZERO_AXIS:
+            raise parser.error("found zero as the axis, expected a direction", start)
+        return [part / greatest for part in axis]  # the squares of great numbers would not be finite
 
     def _rpy(self) -> Array:
         return transform(rotation_from_rpy(self._numbers("rpy", "angle", "angle", "angle")), np.zeros(3))
@@ -163,9 +175,9 @@ class Reader:
     def _quat(self) -> Array:
         token = self.parser.token
         q = self._numbers("quat", "ratio", "ratio", "ratio", "ratio")
-        length = float(np.linalg.norm(q))
+        length = math.hypot(*q)
         if abs(length - 1.0) > DIGITS_LOST:
-            raise self.parser.error(f"the quaternion's length is {length:.6g}, expected 1", token)
+            raise self.parser.error(f"found a quaternion of length {length:.6g}, expected 1", token)
         if abs(length - 1.0) > ROUNDING:
             self.notes.append(f"the quaternion's length is {length:.9g}; it is taken as 1")
         return transform(rotation_from_quaternion(q), np.zeros(3))
@@ -212,23 +224,25 @@ def pose_from_matrix(rows: object, units: Units) -> tuple[Array, str]:
     try:
         M = np.array(rows, dtype=np.float64)
     except (TypeError, ValueError):
-        raise ValueError("the matrix's rows differ in length, expected 4 rows of 4 numbers") from None
+        raise ValueError("found rows that are not numbers of one count, expected 4 rows of 4 numbers") from None
     if M.shape == (3, 4):
         M = np.vstack([M, [0.0, 0.0, 0.0, 1.0]])
     if M.shape != (4, 4):
         shape = "×".join(str(count) for count in M.shape)
         raise ValueError(f"found a matrix of {shape}, expected 4×4")
     if not np.all(np.isfinite(M)):
-        raise ValueError("the matrix holds a number that is not finite, expected finite numbers")
+        raise ValueError("found a number that is not finite in the matrix, expected finite numbers")
     if np.max(np.abs(M[3] - [0.0, 0.0, 0.0, 1.0])) > ROUNDING:
-        raise ValueError(f"the last row is {' '.join(f'{v:g}' for v in M[3])}, expected 0 0 0 1")
+        raise ValueError(f"found the last row {' '.join(f'{v:g}' for v in M[3])}, expected 0 0 0 1")
     R = M[:3, :3]
-    off = float(rotation_error(R))
-    if np.linalg.det(R) < 0.0:
-        raise ValueError("the upper left 3×3 is a reflection (its determinant is negative), expected a rotation")
-    if off > DIGITS_LOST:
+    with np.errstate(all="ignore"):  # of great numbers the products overflow, and are refused
+        off = float(rotation_error(R))
+        reflects = np.linalg.det(R) < 0.0
+    if reflects:
+        raise ValueError("found a reflection in the upper left 3×3 (its determinant is negative), expected a rotation")
+    if not off <= DIGITS_LOST:
         raise ValueError(
-            f"the upper left 3×3 is no rotation: RᵀR is off by {off:.2g}, expected at most {DIGITS_LOST:g}"
+            f"found no rotation in the upper left 3×3: RᵀR is off by {off:.2g}, expected at most {DIGITS_LOST:g}"
         )
     note = ""
     if off > ROUNDING:

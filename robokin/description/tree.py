@@ -3,25 +3,40 @@
 YAML's own guesses are not to be trusted with tables of numbers: in YAML 1.1 `1e-3` is a string, `012`
 is ten, `1:30` is ninety, `no` is false, and a key given twice silently wins. So every scalar stays text
 here; whoever knows what is expected at a place reads it. A key given twice, a tag, nesting beyond
-`MAX_DEPTH` and aliases that multiply beyond `MAX_NODES` are refused. The tree is built from libyaml's
-events, which are produced one by one, so that hostile text is refused before it costs anything.
+`MAX_DEPTH` and a text (its aliases written out) that is larger than `MAX_SIZE` are refused. The tree is
+built from libyaml's events, which are produced one by one, so that hostile text is refused before it costs
+anything.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 import yaml
 
-from robokin.errors import DescriptionError
+from robokin.errors import DescriptionError, shown
 
 MAX_DEPTH = 32
 """Levels of nesting; a description needs about six."""
 
-MAX_NODES = 100_000
-"""Nodes of the tree with its aliases written out; the largest description has about a thousand."""
+MAX_SIZE = 100_000
+"""Size of the tree with its aliases written out; the largest description has about a thousand values."""
+
+CHARACTERS = 16
+"""So many characters of a value count like one more value: an alias repeats the cost of reading it."""
+
+NO_TEXT = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufeff\ufffe\uffff]")
+"""Characters that YAML refuses: controls, halves of surrogate pairs, and what is no character."""
+
+PROBLEMS = {
+    "mapping values are not allowed": "found ': ' inside a value, expected quotes around it, or a line for each key",
+    "cannot start any token": "found {character} where a value starts, expected {instead}",
+    "tab character": "found a tab, expected spaces: YAML indents with spaces alone",
+}
+"""What YAML says of common mistakes, and what a user needs to hear instead."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,25 +97,44 @@ def describe(node: Node) -> str:
         return f"a list of {len(node.items)}" if node.items else "an empty list"
     if node.empty:
         return "nothing"
-    return f"'{node.text if len(node.text) <= 40 else node.text[:37] + '...'}'"
+    return f"'{shown(node.text)}'"
 
 
 def read_tree(text: str, file: str) -> Node:
     """The tree of a text with one YAML document. Raises DescriptionError with line and column."""
+    text = text.removeprefix("\ufeff")
+    if found := NO_TEXT.search(text):
+        line, column = text.count("\n", 0, found.start()) + 1, found.start() - text.rfind("\n", 0, found.start())
+        code = f"U+{ord(found[0]):04X}"
+        raise Mark(file, line, column).error(f"found the character {code}, which is no text, expected YAML in UTF-8")
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         return _Builder(yaml.parse(text, Loader=loader), file).document()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = Mark(file, mark.line + 1, mark.column + 1) if mark else Mark(file, 1, 1)
-        problem = error.problem or error.context or "it cannot be read"
-        raise where.error(f"this is not YAML: {problem}") from None
+        raise where.error(_problem(error, text)) from None
     except yaml.YAMLError as error:
-        raise Mark(file, 1, 1).error(f"this is not YAML: {' '.join(str(error).split())}") from None
+        raise Mark(file, 1, 1).error(f"this is not YAML: {shown(str(error), 200)}") from None
+
+
+def _problem(error: yaml.MarkedYAMLError, text: str) -> str:
+    """What is wrong with a text that is no YAML, in words for who wrote it."""
+    problem = error.problem or error.context or "it cannot be read"
+    mark = error.problem_mark
+    lines = text.splitlines()
+    character = lines[mark.line][mark.column : mark.column + 1] if mark and mark.line < len(lines) else ""
+    for said, sentence in PROBLEMS.items():
+        if said in problem:
+            if character == "\t":
+                return PROBLEMS["tab character"]
+            return sentence.format(character=f"'{shown(character)}'", instead="it in quotes")
+    expected = "" if "expected" in problem else ", expected quotes around a text with any of : # [ ] { } , & * ! | % @"
+    return f"this is not YAML: {problem}{expected}"
 
 
 class _Builder:
-    """Builds the tree from events, keeping count of depth, aliases and size."""
+    """Builds the tree from events, keeping count of depth and size."""
 
     def __init__(self, events: Iterator[Any], file: str) -> None:
         self.events = events
@@ -117,7 +151,9 @@ class _Builder:
                     raise self.mark(event).error("found a second document, expected one description a file")
                 root = self.node(next(self.events))
         if root is None:
-            raise Mark(self.file, 1, 1).error("the file is empty, expected a description: `robokin: 1`, `name: …`")
+            raise Mark(self.file, 1, 1).error(
+                "found nothing in the file, expected a description: `robokin: 1`, `name: …`"
+            )
         return root
 
     def mark(self, event: Any) -> Mark:
@@ -136,35 +172,50 @@ class _Builder:
             raise mark.error(f"found the tag '{event.tag}', expected none: a description holds only text and numbers")
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise mark.error(f"nested more than {MAX_DEPTH} levels deep, expected a plain description")
+            raise mark.error(f"found more than {MAX_DEPTH} levels of nesting, expected a plain description")
         node: Node
         if isinstance(event, yaml.ScalarEvent):
-            node = Scalar(event.value, mark, quoted=event.style is not None)
+            # The style of a plain scalar is "" from libyaml and None from its stand-in in Python.
+            node = Scalar(event.value, mark, quoted=bool(event.style), size=1 + len(event.value) // CHARACTERS)
         elif isinstance(event, yaml.SequenceStartEvent):
-            node = self.sequence(mark)
+            node = self.sequence(mark, bool(event.flow_style))
         else:
-            node = self.mapping(mark)
+            node = self.mapping(mark, bool(event.flow_style))
         self.depth -= 1
-        if node.size > MAX_NODES:
-            raise mark.error(f"its aliases make more than {MAX_NODES} values of it, expected a plain description")
         if event.anchor is not None:
             self.anchors[event.anchor] = node
         return node
 
-    def sequence(self, mark: Mark) -> Sequence:
+    def grow(self, found: Sequence | Mapping, size: int) -> None:
+        """Count what was added to a node; to wait for its end would let aliases multiply first."""
+        found.size += size
+        if found.size > MAX_SIZE:
+            raise found.mark.error(
+                f"found more than {MAX_SIZE} values, aliases written out, expected a plain description"
+            )
+
+    def sequence(self, mark: Mark, flow: bool) -> Sequence:
         """The items up to the end of the list."""
         found = Sequence([], mark)
+        cut: Scalar | None = None
         for event in self.events:
             if isinstance(event, yaml.SequenceEndEvent):
                 break
-            found.items.append(self.node(event))
-            found.size += found.items[-1].size
+            item = self.node(event)
+            if flow and cut is not None and _open(item) < 0:
+                raise _cut_off(cut)
+            if flow and _open(item) > 0 and isinstance(item, Scalar):
+                cut = item
+            found.items.append(item)
+            self.grow(found, item.size)
         return found
 
-    def mapping(self, mark: Mark) -> Mapping:
+    def mapping(self, mark: Mark, flow: bool) -> Mapping:
         """The entries up to the end of the mapping; `<<` takes in another mapping's, own keys win."""
         found = Mapping({}, mark)
         merged: list[Mapping] = []
+        merging: Mark | None = None
+        cut: Scalar | None = None
         for event in self.events:
             if isinstance(event, yaml.MappingEndEvent):
                 break
@@ -172,16 +223,23 @@ class _Builder:
             if not isinstance(key, Scalar):
                 raise key.mark.error(f"found {describe(key)} as a key, expected a word")
             value = self.node(next(self.events))
-            found.size += 1 + value.size
-            if key.text == "<<" and not key.quoted:
+            self.grow(found, key.size + value.size)
+            if flow and cut is not None and isinstance(value, Scalar) and value.empty:
+                raise _cut_off(cut)
+            cut = value if isinstance(value, Scalar) and _open(value) > 0 else None
+            merges = key.text == "<<" and not key.quoted
+            first = merging if merges else found.keys.get(key.text)
+            if first is not None:
+                raise key.mark.error(
+                    f"found the key '{shown(key.text)}' twice, first on line {first.line}, expected each key once"
+                )
+            if merges:
+                merging = key.mark
                 merged.extend(self.merged(value))
-            elif key.text in found.entries:
-                first = found.keys[key.text].line
-                raise key.mark.error(f"the key '{key.text}' is given twice, first on line {first}")
             else:
                 found.entries[key.text] = value
                 found.keys[key.text] = key.mark
-        for other in merged:
+        for other in merged:  # bounded, since `found` has grown by the size of each
             for name, value in other.entries.items():
                 if name not in found.entries:
                     found.entries[name] = value
@@ -195,3 +253,17 @@ class _Builder:
             if not isinstance(part, Mapping):
                 raise part.mark.error(f"found {describe(part)} after '<<', expected a mapping or its alias")
         return [part for part in parts if isinstance(part, Mapping)]
+
+
+def _open(node: Node) -> int:
+    """How many more parentheses a plain scalar opens than it closes."""
+    plain = isinstance(node, Scalar) and not node.quoted
+    return node.text.count("(") - node.text.count(")") if plain and isinstance(node, Scalar) else 0
+
+
+def _cut_off(piece: Scalar) -> DescriptionError:
+    """The error for `[atan2(1, 2)]` or `{origin: Trans(0, 0, 1)}`, whose commas are YAML's."""
+    return piece.mark.error(
+        f"found '{shown(piece.text)}' cut off at a comma, expected the expression in quotes: "
+        "inside [ ] and { } a comma ends a value"
+    )

@@ -63,7 +63,9 @@ class Plan:
 
     def __init__(self, segments: Sequence[Sequence[Constant]], revolute: NDArray[np.bool_], offsets: Array) -> None:
         self.n = len(revolute)
-        self.offsets = offsets[:, None] if np.any(offsets) else None
+        # Angles are halved as they are copied: only the tangents of the halves are ever needed.
+        self.factors = np.where(revolute, 0.5, 1.0)[:, None]
+        self.offsets = offsets[:, None] * self.factors if np.any(offsets) else None
         self.shifts = [[_shift(constant) for constant in segment] for segment in segments]
         self.marks = sum(shift.mark for segment in self.shifts for shift in segment)
         self.turns: list[_Turn | None] = []
@@ -90,13 +92,13 @@ class Plan:
     def frames(self, q: Array, out: Array) -> None:
         """Fill out: (m, marks, 4, 4) with the marked frames at q: (m, n) [rad | m]; m at most a block."""
         m = len(q)
-        values = q.T.copy()
+        values = np.multiply(q.T, self.factors, out=np.empty((self.n, m)))
         if self.offsets is not None:
             values += self.offsets
         for i in self.sums:
             values[i] += values[i - 1]
         all_turn = len(self.turning) == self.n
-        cosines, sines = cos_sin_columns(values if all_turn else values[self.turning])
+        cosines, sines = cos_sin_of_halves(values if all_turn else values[self.turning])
         rows = iter(range(len(self.turning)))
 
         x: Column = [1.0, 0.0, 0.0]
@@ -120,9 +122,9 @@ class Plan:
                     row = next(rows)
                     c, s = cosines[row], sines[row]
                     if turn.need_x:
-                        x = [_sum(_times(c, u), _times(s, v)) for u, v in zip(run_x, run_y, strict=True)]
+                        x = [_turned(c, u, s, v) for u, v in zip(run_x, run_y, strict=True)]
                     if turn.need_y:
-                        y = [_difference(_times(c, v), _times(s, u)) for u, v in zip(run_x, run_y, strict=True)]
+                        y = [_turned_back(c, v, s, u) for u, v in zip(run_x, run_y, strict=True)]
             for shift in shifts:
                 for factor, column in zip(shift.translation, (x, y, z), strict=True):
                     if factor:
@@ -137,22 +139,19 @@ class Plan:
                     marked += 1
 
 
-def cos_sin_columns(angles: Array) -> tuple[Array, Array]:
-    """Cosine and sine of angles (k, m) [rad], to within 4e-16.
+def cos_sin_of_halves(halves: Array) -> tuple[Array, Array]:
+    """Cosine and sine, to within 4e-16, of angles given as their halves (k, m) [rad]; halves is reused.
 
-    With t = tan(angle / 2): cos = (1 - t²) / (1 + t²), sin = 2 t / (1 + t²). At odd multiples of 180°
-    t is huge but finite in floating point and the two tend to their limits -1 and 0.
+    With t = tan(angle / 2) and r = 2 / (1 + t²): cos = r - 1, sin = t r. At odd multiples of 180° t is
+    huge but finite in floating point, and the two come out as -1 and 0.
     """
-    t = angles * 0.5
-    np.tan(t, out=t)
-    c = t * t
-    scale = c + 1.0
-    np.divide(1.0, scale, out=scale)
-    np.subtract(1.0, c, out=c)
-    c *= scale
-    t *= scale
-    t += t
-    return c, t
+    t = np.tan(halves, out=halves)
+    r = t * t
+    r += 1.0
+    np.divide(2.0, r, out=r)
+    t *= r
+    r -= 1.0
+    return r, t
 
 
 def _shift(constant: Constant) -> _Shift:
@@ -199,9 +198,21 @@ def _sum(a: Entry, b: Entry) -> Entry:
     return a + b
 
 
-def _difference(a: Entry, b: Entry) -> Entry:
-    if isinstance(b, float) and b == 0.0:
-        return a
-    if isinstance(a, float) and a == 0.0:
-        return -b
-    return a - b
+def _turned(c: Array, u: Entry, s: Array, v: Entry) -> Entry:
+    """c u + s v."""
+    if isinstance(u, float) or isinstance(v, float):
+        return _sum(_times(c, u), _times(s, v))
+    turned = c * u
+    turned += s * v
+    return turned
+
+
+def _turned_back(c: Array, u: Entry, s: Array, v: Entry) -> Entry:
+    """c u - s v."""
+    if isinstance(v, float):
+        return _sum(_times(c, u), _times(s, -v))
+    if isinstance(u, float):
+        return _sum(_times(c, u), -(s * v))
+    turned = c * u
+    turned -= s * v
+    return turned

@@ -38,6 +38,14 @@ class MechanismJoint:
     pitch: float = 0.0
     actuated: bool = False
 
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        for name in ("at", "axes"):
+            if getattr(self, name) is not None:
+                array = np.array(getattr(self, name), dtype=np.float64)
+                array.flags.writeable = False
+                object.__setattr__(self, name, array)
+
     @property
     def multiplicity(self) -> int:
         """How many two-link joints it counts as: m - 1 for m links."""

@@ -56,6 +56,12 @@ class Joint:
     origin: Array | None = None
     axis: Array | None = None
 
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        for name in ("origin", "axis"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _read_only(getattr(self, name)))
+
     @property
     def moves(self) -> bool:
         """Whether the row has a joint variable."""

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import IO, TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from robokin.cli.options import (
     ORIENTATIONS,
     AngleOption,
+    ArrayOutputOption,
     AsOption,
     FormatOption,
     JsonOption,
     LengthOption,
-    OutputOption,
     RobotArgument,
     SetOption,
     choose,
@@ -27,6 +28,10 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from robokin.cli.poses import Poses
+    from robokin.model import Robot
+    from robokin.units import Units
+
     Array = NDArray[np.float64]
 
 
@@ -37,17 +42,22 @@ def command(
         typer.Option(
             "--q",
             metavar="Q",
-            help="Joint values separated by commas or spaces, expressions allowed (90,0,sqrt(2)); the name of a "
-            "pose; or - for a configuration a line on standard input. Repeatable.",
+            help="Joint values separated by commas or spaces, expressions allowed; or the name of a pose of the "
+            "description; or - for a configuration a line on standard input. Repeatable.",
         ),
     ] = None,
     input: Annotated[
         str | None,
-        typer.Option("--input", "-i", metavar="FILE", help="Configurations, one a line: .csv, .jsonl or .npy; - too."),
+        typer.Option(
+            "--input",
+            "-i",
+            metavar="FILE",
+            help="A configuration a line: .csv (with a header or without), .jsonl or .npy; - for standard input.",
+        ),
     ] = None,
     frames: Annotated[bool, typer.Option("--frames", help="Also the frame after each row of the table.")] = False,
     as_: AsOption = None,
-    output: OutputOption = None,
+    output: ArrayOutputOption = None,
     format: FormatOption = None,
     json: JsonOption = False,
     angle: AngleOption = None,
@@ -58,235 +68,211 @@ def command(
 
     Angles and lengths are in the description's units unless --angle and --length say otherwise.
 
-    Example: robokin fk puma560 --q 90,0,90,0,0,0
+    Examples:
+        robokin fk puma560 --q 90,0,90,0,0,0
+        robokin fk puma560 --q "-90 0 90 0 atan2(3,4) 0" --json
+        robokin fk puma560 --q home --frames
+        robokin fk puma560 --input joints.csv --output poses.csv
+        shuf -n 3 joints.csv | robokin fk puma560 --q - -f csv
     """
+    from robokin.cli import say
     from robokin.cli.arguments import load_robot, parse_configuration
-    from robokin.cli.output.sink import format_of
-    from robokin.errors import InputError
+    from robokin.cli.output.sink import format_of, sink
+    from robokin.cli.poses import PoseMaker
 
-    kind = format_of(output, output_format(format, json))
-    columns = choose(as_, ORIENTATIONS, "--as")
+    kind = format_of(output, output_format(format, json), arrays=True)
+    orientation = choose(as_, ORIENTATIONS, "--as")
     model = load_robot(robot, parameter_overrides(set_))
     units = effective_units(model.units, length, angle)
-    task = _Task(model, units, frames, columns, kind, output)
+    source = _source(model, q, input)
+    if frames and kind == "csv":
+        raise _wrong("--frames: a row of CSV has no room for frames, expected the format table, json, jsonl or npy")
 
-    if input is not None and q:
-        raise InputError("--input and --q exclude each other, expected one of them")
-    source = input if input is not None else "-" if q == ["-"] else None
-    if q and "-" in q and source is None:
-        raise InputError("--q - stands for all configurations on standard input, expected no other --q beside it")
+    maker = PoseMaker(model, units, frames)
     if source is not None:
-        task.stream(source)
-        return 0
-    if not q and model.n:
-        example = ",".join(["0"] * model.n)
-        raise InputError(
-            f"--q is missing, expected {model.n} values, one for each joint of {model.name} "
-            f"({model.types}), such as --q {example}"
-        )
-    task.answer([parse_configuration(text, model, units) for text in q or [""]])
+        alone, blocks = False, _stream(source, model, units)
+    else:
+        import numpy as np
+
+        given = np.array([parse_configuration(text, model, units) for text in q or [""]])
+        for note in maker.outside_notes(given):
+            say(note)
+        alone, blocks = len(given) == 1, iter([given])
+    writer = _Writer(model, units, orientation, alone)
+    with sink(output) as stream:
+        for data in writer.write(kind, maker.of(blocks), stream):
+            stream.write(data)
+            stream.flush()  # whoever waits for an answer gets it before the next question
+    summary = maker.outside_summary() if source is not None else None
+    if summary:
+        say(summary)
     return 0
 
 
-class _Task:
-    """What is to be computed and how it is to be written."""
+def _source(robot: Robot, q: list[str] | None, input: str | None) -> str | None:
+    """What to read configurations from; None when they are given as arguments."""
+    if input is not None and q:
+        raise _wrong("--input and --q exclude each other, expected one of them")
+    source = input if input is not None else "-" if q == ["-"] else None
+    if q and "-" in q and source is None:
+        raise _wrong("--q - stands for all configurations on standard input, expected no other --q beside it")
+    if source is not None and not robot.n:
+        raise _wrong(f"{robot.name} has no joints and one pose, expected no configurations to read")
+    if source is None and not q and robot.n:
+        example = ",".join(["0"] * robot.n)
+        raise _wrong(
+            f"--q is missing, expected {robot.n} values, one for each joint of {robot.name} ({robot.types}), "
+            f"such as --q {example}; --q - reads standard input"
+        )
+    return source
 
-    def __init__(
-        self, robot: Any, units: Any, frames: bool, columns: str | None, kind: str, output: str | None
-    ) -> None:
-        from robokin.cli.arguments import joint_factors
 
-        self.robot, self.units, self.frames, self.columns = robot, units, frames, columns
-        self.kind, self.output = kind, output
-        self.factors = joint_factors(robot, units)
-        self.outside = 0
-        self.first_outside = 0
-        self.count = 0
+def _wrong(sentence: str) -> Exception:
+    from robokin.errors import InputError
 
-    # One or several configurations of the command line ------------------------------------------------
+    return InputError(sentence)
 
-    def answer(self, configurations: list[Array]) -> None:
-        """Write the poses at the given configurations, each (n,) in the units."""
-        import numpy as np
 
-        q = np.array(configurations)
-        for text in self.limit_notes(q):
-            from robokin.cli import say
+def _stream(source: str, robot: Robot, units: Units) -> Iterator[Array]:
+    """Blocks of configurations (m, n) from a file or from standard input, in the units."""
+    from robokin.cli.rows import Columns, open_input, read_rows
 
-            say(text)
-        if self.kind == "table":
-            from robokin.cli.output.sink import sink
-            from robokin.cli.output.tables import render
+    columns = Columns(
+        names=tuple(f"q{i}" for i in range(1, robot.n + 1)),
+        aliases=tuple(joint.name for joint in robot.joints),
+        angles=tuple(bool(turns) for turns in robot.revolute),
+        key="q",
+        what=f"one for each joint of {robot.name} ({robot.types})",
+    )
+    with open_input(source) as (stream, name):
+        yield from read_rows(stream, name, columns, units)
 
-            with sink(None) as stream:
-                stream.write(render(*self.tables(q)))
-        elif self.kind == "json" and len(q) == 1:
-            from robokin.cli.output.sink import sink
+
+@dataclass(frozen=True)
+class _Writer:
+    """Poses to bytes. `alone` tells that one configuration was asked for, by --q."""
+
+    robot: Robot
+    units: Units
+    orientation: str | None
+    alone: bool
+
+    def write(self, kind: str, answers: Iterable[Poses], stream: IO[bytes]) -> Iterator[bytes]:
+        """The answers in a format, piece by piece; arrays go to the stream themselves."""
+        if kind == "npy":
+            self.npy(answers, stream)
+            return iter(())
+        if self.alone and kind in ("table", "json"):
+            return self.one(kind, next(iter(answers)))
+        return {"csv": self.csv, "jsonl": self.jsonl, "json": self.json, "table": self.table}[kind](answers)
+
+    def one(self, kind: str, poses: Poses) -> Iterator[bytes]:
+        if kind == "json":
             from robokin.cli.output.text import json_document
 
-            with sink(self.output) as stream:
-                stream.write(json_document(next(self.records(q))))
+            yield json_document(*self.records(poses))
         else:
-            self.write_blocks(iter([q]))
+            from robokin.cli.output.tables import render
 
-    def limit_notes(self, q: Array) -> Iterator[str]:
-        """A sentence for each joint value outside its limits."""
-        from robokin.cli.output.numbers import show
+            yield render(*self.page(poses))
 
-        for values in q:
-            for i, joint in enumerate(self.robot.joints):
-                low, high = (limit / self.factors[i] for limit in joint.limits)
-                if not self.within_one(i, values[i]):
-                    unit = self.units.angle if joint.type == "revolute" else self.units.length
-                    name = "" if joint.name == str(i + 1) else f" ({joint.name})"
-                    limits = f"{show(low)} .. {show(high)}"
-                    yield f"joint {i + 1}{name} = {show(values[i])} {unit} is outside its limits {limits}"
-
-    def within_one(self, i: int, value: float) -> bool:
-        from robokin.model.robot import LIMIT_TOLERANCE
-
-        low, high = self.robot.joints[i].limits
-        return bool(low - LIMIT_TOLERANCE <= value * self.factors[i] <= high + LIMIT_TOLERANCE)
-
-    # A stream ------------------------------------------------------------------------------------------
-
-    def stream(self, source: str) -> None:
-        """Write the poses at the configurations of a file or of standard input."""
-        from robokin.cli import say
-        from robokin.cli.rows import Columns, open_input, read_rows
-
-        robot = self.robot
-        columns = Columns(
-            names=tuple(f"q{i}" for i in range(1, robot.n + 1)),
-            aliases=tuple(joint.name for joint in robot.joints),
-            angles=tuple(bool(turns) for turns in robot.revolute),
-            key="q",
-            what=f"{robot.n} values a line, one for each joint of {robot.name} ({robot.types})",
-        )
-        with open_input(source) as (stream, name):
-            self.write_blocks(read_rows(stream, name, columns, self.units))
-        if self.outside:
-            say(f"{self.outside} of {self.count} configurations are outside the joint limits, "
-                f"first configuration {self.first_outside}")  # fmt: skip
-
-    def write_blocks(self, blocks: Iterator[Array]) -> None:
-        """Write blocks of configurations (m, n) in the chosen format."""
-        from robokin.cli.output.sink import sink
-
-        with sink(self.output) as stream:
-            for data in getattr(self, f"_{self.kind}")(blocks, stream):
-                stream.write(data)
-
-    def _csv(self, blocks: Iterator[Array], stream: Any) -> Iterator[bytes]:
+    def csv(self, answers: Iterable[Poses]) -> Iterator[bytes]:
         import numpy as np
 
         from robokin.cli.output.text import csv_header, csv_rows
         from robokin.cli.records import pose_columns, pose_table
 
-        kind = self.columns or "rpy"
-        yield csv_header([*(f"q{i}" for i in range(1, self.robot.n + 1)), *pose_columns(kind)])
-        for q in blocks:
-            T = self.poses(q)
-            yield csv_rows(np.concatenate([q + 0.0, pose_table(T, kind, self.units)], axis=1))
+        kind = self.orientation or "rpy"
+        header = csv_header([*(f"q{i}" for i in range(1, self.robot.n + 1)), *pose_columns(kind)])
+        for poses in answers:
+            yield header + csv_rows(np.concatenate([poses.q, pose_table(poses.T, kind, self.units)], axis=1))
+            header = b""
+        yield header
 
-    def _jsonl(self, blocks: Iterator[Array], stream: Any) -> Iterator[bytes]:
+    def jsonl(self, answers: Iterable[Poses]) -> Iterator[bytes]:
         from robokin.cli.output.text import json_line
 
-        for q in blocks:
-            yield b"".join(json_line(record) for record in self.records(q))
+        for poses in answers:
+            yield b"".join(json_line(record) for record in self.records(poses))
 
-    def _json(self, blocks: Iterator[Array], stream: Any) -> Iterator[bytes]:
+    def json(self, answers: Iterable[Poses]) -> Iterator[bytes]:
         from robokin.cli.output.text import json_list
 
-        return json_list(record for q in blocks for record in self.records(q))
+        return json_list(self.records(poses) for poses in answers)
 
-    def _npy(self, blocks: Iterator[Array], stream: Any) -> Iterator[bytes]:
+    def npy(self, answers: Iterable[Poses], stream: IO[bytes]) -> None:
         from robokin.cli.output.arrays import ArrayWriter
         from robokin.cli.records import pose_columns, pose_table
 
-        kind = self.columns or "matrix"
-        if self.frames:
-            shape: tuple[int, ...] = (len(self.robot.rows), 4, 4)
-        else:
-            shape = (4, 4) if kind == "matrix" else (len(pose_columns(kind)),)
-        writer = ArrayWriter(stream, shape)
-        for q in blocks:
-            if self.frames:
-                writer.write(self.row_frames(q))
-            else:
-                T = self.poses(q)
-                writer.write(T if kind == "matrix" else pose_table(T, kind, self.units))
-        writer.close()
-        return iter(())
+        kind = self.orientation or "matrix"
+        writer: ArrayWriter | None = None
+        shape: tuple[int, ...] = (4, 4) if kind == "matrix" else (len(pose_columns(kind)),)
+        for poses in answers:
+            block = poses.T if kind == "matrix" else pose_table(poses.T, kind, self.units)
+            if poses.frames is not None:
+                block = poses.frames
+            writer = writer or ArrayWriter(stream, block.shape[1:])
+            writer.write(block)
+        (writer or ArrayWriter(stream, shape)).close()
 
-    def _table(self, blocks: Iterator[Array], stream: Any) -> Iterator[bytes]:
-        from robokin.cli.output.tables import number_table, render
+    def table(self, answers: Iterable[Poses]) -> Iterator[bytes]:
+        from robokin.cli.output.columns import NumberColumns
         from robokin.cli.records import pose_columns, pose_table
 
-        kind = self.columns or "rpy"
-        for q in blocks:
-            yield render(number_table(pose_columns(kind), pose_table(self.poses(q), kind, self.units).tolist()))
+        kind = self.orientation or "rpy"
+        head = f"{self.robot.name}  lengths in {self.units.length}, angles in {self.units.angle}\n\n"
+        columns = None
+        for poses in answers:
+            numbers = range(poses.first, poses.first + len(poses.q))
+            if kind == "matrix" or poses.frames is not None:
+                columns = columns or NumberColumns([("#", 5), ("frame", 5), ("", 1)], "nsap", "uuul", self.units)
+                lines = columns.lines(*self.matrices(poses, numbers))
+            else:
+                names = pose_columns(kind)
+                kinds = "lll" + ("aaa" if kind in ("rpy", "euler") else "uuuu")
+                columns = columns or NumberColumns([("#", 5)], names, kinds, self.units)
+                lines = columns.lines(((number,) for number in numbers), pose_table(poses.T, kind, self.units))
+            yield f"{head}{columns.heading if head else ''}{lines}".encode()
+            head = ""
 
-    # Computing -------------------------------------------------------------------------------------------
+    def matrices(self, poses: Poses, numbers: Iterable[int]) -> tuple[list[tuple[object, str, str]], Array]:
+        """Three lines for each matrix of a block, with their labels."""
+        import numpy as np
 
-    def poses(self, q: Array) -> Array:
-        """Poses (m, 4, 4) in the units at q (m, n) in the units; counts what is outside the limits."""
-        from robokin.cli.records import poses_in
-        from robokin.kinematics.forward import forward_kinematics
+        all_frames = poses.T[:, None]
+        names = ["hand"]
+        if poses.frames is not None:
+            all_frames = np.concatenate([poses.frames, all_frames], axis=1)
+            names = [*(str(i) for i in range(1, poses.frames.shape[1] + 1)), "hand"]
+        first = [(name if axis == "x" else "", axis) for name in names for axis in "xyz"]
+        labels: list[tuple[object, str, str]] = [
+            (number if k == 0 else "", *label) for number in numbers for k, label in enumerate(first)
+        ]
+        return labels, all_frames[:, :, :3].reshape(-1, 4)
 
-        si = q * self.factors
-        outside = ~self.robot.within_limits(si)
-        if outside.any():
-            if not self.outside:
-                self.first_outside = self.count + int(outside.argmax()) + 1
-            self.outside += int(outside.sum())
-        self.count += len(q)
-        return poses_in(forward_kinematics(self.robot, si), self.units)
+    def records(self, poses: Poses) -> Iterator[dict[str, Any]]:
+        """The JSON documents of a block."""
+        from robokin.cli.records import configuration_records
 
-    def row_frames(self, q: Array) -> Array:
-        """Frames (m, rows, 4, 4) in the units."""
-        from robokin.cli.records import poses_in
-        from robokin.kinematics.forward import row_frames
+        return configuration_records(self.robot, self.units, poses, [self.orientation] if self.orientation else [])
 
-        self.count += len(q)
-        return poses_in(row_frames(self.robot, q * self.factors), self.units)
-
-    def records(self, q: Array) -> Iterator[dict[str, Any]]:
-        """The JSON documents at q (m, n) in the units."""
-        from robokin.cli.records import configuration_record, poses_in
-        from robokin.kinematics.forward import row_frames
-
-        T = self.poses(q)
-        within = self.robot.within_limits(q * self.factors).tolist()
-        frames: list[Any] = [None] * len(q)
-        if self.frames:
-            frames = list(poses_in(row_frames(self.robot, q * self.factors), self.units))
-        for i in range(len(q)):
-            yield configuration_record(self.robot, self.units, q[i] + 0.0, within[i], T[i], frames[i])
-
-    def tables(self, q: Array) -> list[Any]:
-        """The tables for eyes."""
+    def page(self, poses: Poses) -> list[Any]:
+        """All that can be said of one pose, for eyes."""
         from robokin.cli.output.numbers import show
         from robokin.cli.output.tables import heading, number_table, pairs
-        from robokin.cli.records import ORIENTATION_COLUMNS, orientation, pose_columns, pose_table
+        from robokin.cli.records import orientation
 
-        units = self.units
-        head = heading(self.robot.name, f"lengths in {units.length}, angles in {units.angle}")
-        T = self.poses(q)
-        if len(q) > 1:
-            kind = self.columns or "rpy"
-            rows = pose_table(T, kind, units).tolist()
-            return [head, "", number_table(pose_columns(kind), rows, [str(i) for i in range(1, len(q) + 1)])]
-        parts: list[Any] = [head, "", number_table("nsap", T[0, :3].tolist(), "xyz"), ""]
-        entries = [("q", "  ".join(show(value) for value in q[0]))] if self.robot.n else []
-        entries.append(("position", "  ".join(show(value) for value in T[0, :3, 3])))
+        T = poses.T[0]
+        parts: list[Any] = [heading(self.robot.name, f"lengths in {self.units.length}, angles in {self.units.angle}")]
+        parts += ["", number_table("nsap", T[:3].tolist(), "xyz"), ""]
+        entries = [("q", "  ".join(show(value) for value in poses.q[0]))] if self.robot.n else []
+        entries.append(("position", "  ".join(show(value) for value in T[:3, 3])))
         labels = {"rpy": "roll pitch yaw", "quaternion": "quaternion", "euler": "Euler ZYZ"}
-        for kind in dict.fromkeys([self.columns or "rpy", "rpy", "quaternion"]):
-            if kind in labels and kind in ORIENTATION_COLUMNS:
-                values = orientation(T[0], kind, units)
+        for kind in dict.fromkeys([self.orientation or "rpy", "rpy", "quaternion"]):
+            if kind in labels:
+                values = orientation(T, kind, self.units)
                 entries.append((labels[kind], "  ".join(show(value) for value in values)))
         parts.append(pairs(entries))
-        if self.frames:
-            for i, frame in enumerate(self.row_frames(q)[0], start=1):
-                parts += ["", heading(f"frame {i}"), number_table("nsap", frame[:3].tolist(), "xyz")]
+        for i, frame in enumerate([] if poses.frames is None else poses.frames[0], start=1):
+            parts += ["", heading(f"frame {i}"), number_table("nsap", frame[:3].tolist(), "xyz")]
         return parts

@@ -9,11 +9,11 @@ import typer
 from robokin.cli.options import (
     ORIENTATIONS,
     AngleOption,
+    ArrayOutputOption,
     AsOption,
     FormatOption,
     JsonOption,
     LengthOption,
-    OutputOption,
     choose,
     effective_units,
     output_format,
@@ -33,12 +33,12 @@ def command(
     ],
     of: Annotated[
         str | None,
-        typer.Option("--of", metavar="EXPR", help="Map this frame by EXPR: the result is EXPR times it."),
+        typer.Option("--of", metavar="EXPR", help="Map this frame: the result is EXPR times it."),
     ] = None,
-    inverse: Annotated[bool, typer.Option("--inverse", help="Take the inverse of EXPR.")] = False,
+    inverse: Annotated[bool, typer.Option("--inverse", help="Take the inverse of EXPR (before --of).")] = False,
     point: Annotated[str | None, typer.Option("--point", metavar="X,Y,Z", help="Map a point by the result.")] = None,
     as_: AsOption = None,
-    output: OutputOption = None,
+    output: ArrayOutputOption = None,
     format: FormatOption = None,
     json: JsonOption = False,
     angle: AngleOption = None,
@@ -48,8 +48,14 @@ def command(
 
     Angles are in degrees and lengths in metres unless --angle and --length say otherwise.
 
-    Example: robokin frame "Trans(4,-3,7) Rot(y,90) Rot(z,90)"
+    Examples:
+        robokin frame "Trans(4,-3,7) Rot(y,90) Rot(z,90)"
+        robokin frame "Trans(10,5,0) Rot(z,30)" --point 3,7,0
+        robokin frame "Inv(Trans(4,3,0) Rot(z,30))" --json
+        robokin frame "Rot(z,pi/2)" --angle rad --of "Trans(1,0,0)"
     """
+    import numpy as np
+
     from robokin.cli import say
     from robokin.cli.arguments import parse_numbers
     from robokin.cli.output.sink import format_of, sink
@@ -61,8 +67,8 @@ def command(
     from robokin.spatial import invert, map_point
     from robokin.units import Units
 
-    kind = format_of(output, output_format(format, json))
-    columns = choose(as_, ORIENTATIONS, "--as") or "rpy"
+    kind = format_of(output, output_format(format, json), arrays=True)
+    columns = choose(as_, ORIENTATIONS, "--as")
     units = effective_units(Units(angle="deg"), length, angle)
     scope = Scope(degrees=units.degrees)
     notes: list[str] = []
@@ -73,18 +79,26 @@ def command(
         except ExpressionError as error:
             raise InputError(f"{option}: {error}") from None
 
-    T = value(expression, "EXPR")
-    if inverse:
-        T = invert(T)
-    if of is not None:
-        T = T @ value(of, "--of")
+    # What is too large is found below, and said in a sentence.
+    with np.errstate(over="ignore", invalid="ignore"):
+        T = value(expression, "EXPR")
+        if inverse:
+            T = invert(T)
+        if of is not None:
+            T = T @ value(of, "--of")
+        T = poses_in(T, units)
+        mapped = None
+        if point is not None:
+            mapped = map_point(T, parse_numbers(point, "--point", [False] * 3, units, "x, y, z")) + 0.0
+    if not (np.isfinite(T).all() and (mapped is None or np.isfinite(mapped).all())):
+        raise InputError("the result is too far away for a number, expected less")
     for note in notes:
         say(note)
-    T = poses_in(T, units)
     record: dict[str, Any] = {"expression": expression, "units": units.as_record(), **frame_record(T, units)}
-    if point is not None:
-        p = parse_numbers(point, "--point", [False] * 3, units, "x, y, z")
-        record["point"] = (map_point(T, p) + 0.0).tolist()
+    if mapped is not None:
+        record["point"] = mapped.tolist()
+        if kind == "npy":
+            raise InputError("--point: an array of a transform has no room for a point, expected another format")
 
     with sink(output) as stream:
         if kind == "json":
@@ -92,13 +106,13 @@ def command(
         elif kind == "jsonl":
             stream.write(json_line(record))
         elif kind == "csv":
-            stream.write(csv_header(pose_columns(columns)) + csv_rows(pose_table(T[None], columns, units)))
+            names, row = pose_columns(columns or "rpy"), pose_table(T[None], columns or "rpy", units)
+            if mapped is not None:
+                names, row = (*names, "point_x", "point_y", "point_z"), np.hstack([row, mapped[None]])
+            stream.write(csv_header(names) + csv_rows(row))
         elif kind == "npy":
-            from robokin.cli.output.arrays import ArrayWriter
-
-            writer = ArrayWriter(stream, (4, 4))
-            writer.write(T[None])
-            writer.close()
+            row = T if columns in (None, "matrix") else pose_table(T[None], columns, units)[0]
+            np.lib.format.write_array(stream, row, version=(1, 0))
         else:
             stream.write(_table(record, units))
     return 0

@@ -11,7 +11,7 @@ from robokin.cli.options import FormatOption, JsonOption, OutputOption, output_f
 
 def command(
     words: Annotated[
-        list[str] | None, typer.Argument(metavar="[WORD]...", help="Only entries with all of these words.")
+        list[str] | None, typer.Argument(metavar="[WORD]...", help="Only what has all of these words in it.")
     ] = None,
     output: OutputOption = None,
     format: FormatOption = None,
@@ -19,17 +19,19 @@ def command(
 ) -> int:
     """The library of robots and mechanisms: names to use in every other command.
 
-    Example: robokin list kuka
+    Examples:
+        robokin list
+        robokin list kuka
+        robokin list mechanism --json
     """
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.output.text import csv_records, json_document, json_line
     from robokin.description.library import library_names, load_any
-    from robokin.errors import InputError
 
     kind = format_of(output, output_format(format, json))
     records = [_record(load_any(name)) for name in library_names()]
     for word in words or []:
-        records = [record for record in records if word.casefold() in " ".join(map(str, record.values())).casefold()]
+        records = [record for record in records if _plain(word) in _plain(" ".join(map(str, record.values())))]
     with sink(output) as stream:
         if kind == "json":
             stream.write(json_document(records))
@@ -38,11 +40,16 @@ def command(
         elif kind == "csv":
             columns = ["id", "name", "kind", "joints", "dof", "source"]
             stream.write(csv_records(columns, [list(record.values()) for record in records]))
-        elif kind == "table":
-            stream.write(_table(records))
         else:
-            raise InputError(f"--output {output}: a list is no array, expected .csv, .json or .jsonl")
+            stream.write(_table(records))
     return 0
+
+
+def _plain(text: str) -> str:
+    """The text without accents and capitals, so that `staubli` finds Stäubli."""
+    from unicodedata import combining, normalize
+
+    return "".join(letter for letter in normalize("NFKD", text.casefold()) if not combining(letter))
 
 
 def _record(entry: Any) -> dict[str, Any]:
@@ -60,15 +67,16 @@ def _record(entry: Any) -> dict[str, Any]:
 
 
 def _table(records: list[dict[str, Any]]) -> bytes:
+    from robokin.cli.output.numbers import counted
     from robokin.cli.output.tables import render, table
 
     drawn = table()
     drawn.add_column("id", style="cyan", no_wrap=True)
     drawn.add_column("name", overflow="fold")
-    drawn.add_column("joints", no_wrap=True)
+    drawn.add_column("joints", overflow="fold", max_width=12)
     drawn.add_column("dof", justify="right")
     for record in records:
         dof = "–" if record["dof"] is None else str(record["dof"])
         drawn.add_row(record["id"], record["name"], record["joints"], dof)
     robots = sum(record["kind"] == "robot" for record in records)
-    return render(drawn, f"\n{robots} robots, {len(records) - robots} mechanisms")
+    return render(drawn, f"\n{counted(robots, 'robot')}, {counted(len(records) - robots, 'mechanism')}")

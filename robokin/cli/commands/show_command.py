@@ -33,12 +33,15 @@ def command(
 ) -> int:
     """A robot's table, its class, its wrist and its freedoms; a mechanism's joints and its count.
 
-    Example: robokin show puma560
+    Examples:
+        robokin show puma560
+        robokin show four-bar
+        robokin show arm.yaml --length m --angle rad
+        robokin show scara-frames --set l1=500 --json
     """
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.output.text import csv_records, json_document, json_line
     from robokin.description.library import load_any
-    from robokin.errors import InputError
     from robokin.model import Robot
 
     kind = format_of(output, output_format(format, json))
@@ -54,10 +57,8 @@ def command(
         elif kind == "csv":
             rows = record["rows"] if is_robot else record["joints"]
             stream.write(csv_records(list(rows[0]), [[_cell(value) for value in row.values()] for row in rows]))
-        elif kind == "table":
-            stream.write(_robot_table(record) if is_robot else _mechanism_table(record))
         else:
-            raise InputError(f"--output {output}: a description is no array, expected .csv, .json or .jsonl")
+            stream.write(_robot_table(record) if is_robot else _mechanism_table(record))
     return 0
 
 
@@ -164,7 +165,7 @@ def mechanism_record(mechanism: Mechanism, units: Units) -> dict[str, Any]:
 
 
 def _robot_table(record: dict[str, Any]) -> bytes:
-    from robokin.cli.output.numbers import show
+    from robokin.cli.output.numbers import show, show_range
     from robokin.cli.output.tables import heading, pairs, render, table
 
     drawn = table()
@@ -182,7 +183,7 @@ def _robot_table(record: dict[str, Any]) -> bytes:
         if not frames:
             order = ("alpha", "a", "theta", "d") if modified else ("theta", "d", "a", "alpha")
             cells = [_variable(row, name) for name in order]
-        limits = "" if row["limits"] is None else " .. ".join(show(limit) for limit in row["limits"])
+        limits = "" if row["limits"] is None else show_range(*row["limits"])
         drawn.add_row(str(row["i"]), *([row["name"]] if named else []), row["type"], *cells, limits)
     units = record["units"]
     entries = [("class", record["class"])]

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from robokin.cli import WRONG_INPUT
+from robokin.cli import DONE, WRONG_INPUT, say
 from robokin.cli.options import FormatOption, JsonOption, OutputOption, output_format
 
 
@@ -21,11 +21,12 @@ def command(
 ) -> int:
     """Check descriptions; the status is 2 if any is wrong.
 
-    Example: robokin validate arm.yaml
+    Examples:
+        robokin validate arm.yaml
+        robokin validate robots/*.yaml --json
     """
     from robokin.cli.output.sink import format_of, sink
-    from robokin.cli.output.text import csv_records, json_document, json_line
-    from robokin.errors import InputError
+    from robokin.cli.output.text import csv_records, encode, json_document, json_line
 
     kind = format_of(output, output_format(format, json))
     records = [_verdict(file) for file in files]
@@ -36,13 +37,14 @@ def command(
             stream.write(b"".join(json_line(record) for record in records))
         elif kind == "csv":
             stream.write(csv_records(list(records[0]), [list(record.values()) for record in records]))
-        elif kind == "table":
+        else:
             for record in records:
                 detail = f"{record['kind']} {record['name']}" if record["valid"] else record["error"]
-                stream.write(f"{'ok   ' if record['valid'] else 'wrong'}  {_shown(record, detail)}\n".encode())
-        else:
-            raise InputError(f"--output {output}: verdicts are no array, expected .csv, .json or .jsonl")
-    return 0 if all(record["valid"] for record in records) else WRONG_INPUT
+                stream.write(encode(f"{'ok   ' if record['valid'] else 'wrong'}  {_shown(record, detail)}\n"))
+    wrong = sum(not record["valid"] for record in records)
+    if wrong:
+        say(f"{wrong} of {len(records)} descriptions {'is' if wrong == 1 else 'are'} wrong")
+    return WRONG_INPUT if wrong else DONE
 
 
 def _shown(record: dict[str, Any], detail: str) -> str:

@@ -23,3 +23,16 @@ def show_column(values: Sequence[float]) -> list[str]:
     return [
         text if "e" in text else f"{float(text):.{decimals}f}" if float(text) else f"{0:.{decimals}f}" for text in texts
     ]
+
+
+def show_range(low: float, high: float) -> str:
+    """`low .. high`, rounded inward: what is shown lies within."""
+    step = 10.0**-DECIMALS
+    least = show(low) if float(show(low)) >= low else show(low + step)
+    most = show(high) if float(show(high)) <= high else show(high - step)
+    return f"{least} .. {most}"
+
+
+def counted(number: int, noun: str) -> str:
+    """`1 value`, `2 values`."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

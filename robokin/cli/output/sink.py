@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import secrets
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
-from robokin.errors import InputError, OutputError
+from robokin.errors import InputError, OutputError, or_list
 
 ENDINGS = {".csv": "csv", ".jsonl": "jsonl", ".json": "json", ".npy": "npy"}
 """Formats by the ending of the output's name."""
 
 
-def format_of(output: str | None, chosen: str | None) -> str:
-    """The format to write: the output's ending, else the chosen one, else a table."""
+def format_of(output: str | None, chosen: str | None, *, arrays: bool = False) -> str:
+    """The format to write: the output's ending, else the chosen one, else a table.
+
+    `arrays` tells whether what is written can be an array, so that `.npy` is possible.
+    """
     if output is None:
         return chosen or "table"
-    ending = Path(output).suffix.lower()
-    if ending not in ENDINGS:
-        raise InputError(f"--output: found '{output}', expected a name that ends with {', '.join(ENDINGS)}")
-    if chosen is not None and chosen != ENDINGS[ending]:
+    kind = ENDINGS.get(Path(output).suffix.lower())
+    if kind is None or (kind == "npy" and not arrays):
+        possible = [ending for ending in ENDINGS if arrays or ending != ".npy"]
+        raise InputError(f"--output: found '{output}', expected a name that ends with {or_list(possible)}")
+    if chosen is not None and chosen != kind:
         raise InputError(f"--output {output} and --format {chosen} say different things, expected one of them")
-    return ENDINGS[ending]
+    return kind
 
 
 @contextlib.contextmanager
@@ -35,12 +40,21 @@ def sink(output: str | None) -> Iterator[IO[bytes]]:
     any error, and on Ctrl-C, nothing is left.
     """
     if output is None:
-        # What was printed before as text must come first.
-        sys.stdout.flush()
-        yield sys.stdout.buffer
-        sys.stdout.buffer.flush()
+        if sys.stdout is None:
+            raise OutputError("standard output is closed, expected a place that can be written")
+        try:
+            # What was printed before as text must come first.
+            sys.stdout.flush()
+            yield sys.stdout.buffer
+            sys.stdout.buffer.flush()
+        except OSError as error:
+            error.filename = error.filename or "standard output"
+            raise
         return
-    path = Path(output)
+    # A link stays a link: what it points to is replaced.
+    path = Path(os.path.realpath(output))
+    if path.is_dir():
+        raise OutputError(f"--output {output}: found a directory, expected a place that can be written")
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     try:
         stream = temporary.open("xb")
@@ -51,8 +65,6 @@ def sink(output: str | None) -> Iterator[IO[bytes]]:
             yield stream
         temporary.replace(path)
     except OSError as error:
-        if isinstance(error, BrokenPipeError):
-            raise
         raise OutputError(f"--output {output}: {error.strerror}, nothing was written") from None
     finally:
         with contextlib.suppress(OSError):

@@ -1,4 +1,4 @@
-"""Tables for eyes, drawn by Rich. Off a terminal they have no colour and are never cut short."""
+"""Tables for eyes, drawn by Rich. Off a terminal they have no colour; they are never cut short."""
 
 from __future__ import annotations
 
@@ -13,25 +13,15 @@ from rich.table import Table
 from rich.text import Text
 
 from robokin.cli.output.numbers import show_column
+from robokin.cli.output.text import encode
 
 WIDTH = 80
 """Columns of a page when nobody's terminal says otherwise."""
 
 
-def table(title: str = "", caption: str = "") -> Table:
+def table() -> Table:
     """An empty table in the house's style."""
-    return Table(
-        title=title or None,
-        caption=caption or None,
-        box=box.SIMPLE_HEAD,
-        title_justify="left",
-        caption_justify="left",
-        title_style="bold",
-        caption_style="dim",
-        header_style="bold",
-        pad_edge=False,
-        show_edge=False,
-    )
+    return Table(box=box.SIMPLE_HEAD, header_style="bold", pad_edge=False, show_edge=False)
 
 
 def number_table(columns: Sequence[str], rows: Sequence[Sequence[float]], labels: Sequence[str] = ()) -> Table:
@@ -58,10 +48,10 @@ def pairs(entries: Sequence[tuple[str, str]]) -> Table:
 
 
 def heading(text: str, rest: str = "") -> Text:
-    """A line that says what follows."""
+    """A line that says what follows, or two when they are long."""
     line = Text(text, style="bold")
     if rest:
-        line.append(f"  {rest}", style="not bold dim")
+        line.append("  " if len(text) + len(rest) + 2 <= WIDTH else "\n").append(rest, style="not bold dim")
     return line
 
 
@@ -69,15 +59,24 @@ def render(*parts: Table | Text | str) -> bytes:
     """The parts one below the other, as standard output takes them."""
     terminal = sys.stdout.isatty()
     text = io.StringIO()
-    console = Console(file=text, force_terminal=terminal, width=None if terminal else WIDTH, highlight=False)
-    if not terminal:
-        console.no_color = True
+    # Names come from files: what they say is text, never a style.
+    console = Console(
+        file=text,
+        force_terminal=terminal,
+        width=None if terminal else WIDTH,
+        highlight=False,
+        markup=False,
+        emoji=False,
+        legacy_windows=False,
+    )
+    page = console.width
     for part in parts:
         drawn = Text(part) if isinstance(part, str) else part
-        # Numbers are never cut: a table that needs more room gets it, and a narrow terminal wraps lines.
-        least = Measurement.get(console, console.options.update(max_width=10_000), drawn).minimum
-        width = max(console.width, least) if isinstance(drawn, Table) else console.width
-        console.print(drawn, width=width, soft_wrap=isinstance(drawn, Text) and not terminal)
-    # Rich pads cells up to the edge; what is copied from a terminal should have no blanks at its end.
+        if isinstance(drawn, Table):
+            # Nothing is cut: a table that needs more room gets it, and a narrow terminal wraps its lines.
+            console.width = max(page, Measurement.get(console, console.options.update(max_width=10_000), drawn).minimum)
+        console.print(drawn, soft_wrap=isinstance(drawn, Text) and not terminal)
+        console.width = page
+    # Rich pads cells up to the edge; what goes into a file should have no blanks at its lines' ends.
     lines = text.getvalue().split("\n")
-    return "\n".join(line if terminal else line.rstrip() for line in lines).encode()
+    return encode("\n".join(line if terminal else line.rstrip() for line in lines))

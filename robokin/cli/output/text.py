@@ -5,7 +5,9 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cache
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -13,28 +15,29 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-try:
-    from pydantic_core import to_json
-except ImportError:  # an older Typer brings no pydantic
-    to_json = None  # type: ignore[assignment]
+
+def encode(text: str) -> bytes:
+    """A text in UTF-8. What a file's name holds that is no text is written as \\udcxx, in JSON an escape too."""
+    return text.encode(errors="backslashreplace")
 
 
 def json_document(record: Any) -> bytes:
     """One JSON document, indented for eyes, its matrices a row a line; never NaN or Infinity."""
-    return (_pretty(record, 0) + "\n").encode()
+    return encode(_pretty(record, 0) + "\n")
 
 
 def json_line(record: Any) -> bytes:
     """One JSON document on one line."""
-    return (json.dumps(record, ensure_ascii=False, allow_nan=False) + "\n").encode()
+    return encode(json.dumps(record, ensure_ascii=False, allow_nan=False) + "\n")
 
 
-def json_list(records: Iterable[Any]) -> Iterator[bytes]:
-    """A JSON list of records, a record a line, written as they come."""
+def json_list(blocks: Iterable[Iterable[Any]]) -> Iterator[bytes]:
+    """A JSON list of the records in all blocks, a record a line, written as the blocks come."""
     separator = b"[\n"
-    for record in records:
-        yield separator + json_line(record)[:-1]
-        separator = b",\n"
+    for records in blocks:
+        if lines := b",\n".join(json_line(record)[:-1] for record in records):
+            yield separator + lines
+            separator = b",\n"
     yield b"[]\n" if separator == b"[\n" else b"\n]\n"
 
 
@@ -68,8 +71,9 @@ def csv_rows(table: Array) -> bytes:
     if not len(table):
         return b""
     rows = table.tolist()
+    to_json = pydantic_function("to_json")
     if to_json is not None:
-        return to_json(rows)[2:-2].replace(b"],[", b"\n") + b"\n"
+        return bytes(to_json(rows)[2:-2].replace(b"],[", b"\n") + b"\n")
     return "".join(",".join(map(repr, row)) + "\n" for row in rows).encode()
 
 
@@ -79,4 +83,14 @@ def csv_records(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)
     writer.writerows(rows)
-    return text.getvalue().encode()
+    return encode(text.getvalue())
+
+
+@cache
+def pydantic_function(name: str) -> Callable[..., Any] | None:
+    """A function of pydantic's core, which Typer brings; None with an older Typer. Not loaded before it is used."""
+    try:
+        core = import_module("pydantic_core")
+    except ImportError:
+        return None
+    return getattr(core, name, None)

@@ -1,0 +1,29 @@
+"""Runs every benchmark, or those whose names are given: `python -m benchmarks [forward] [pipes] [start]`."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+# One core: a ratio should compare programs, not thread pools. Set before numpy is imported.
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(name, "1")
+
+from benchmarks import forward, machine, pipes, start  # noqa: E402
+
+BENCHMARKS = {"forward": forward.run, "pipes": pipes.run, "start": start.run}
+
+
+def main() -> None:
+    chosen = sys.argv[1:] or list(BENCHMARKS)
+    unknown = [name for name in chosen if name not in BENCHMARKS]
+    if unknown:
+        sys.exit(f"there is no benchmark {', '.join(unknown)}, expected some of {', '.join(BENCHMARKS)}")
+    print(machine.describe())
+    for name in chosen:
+        print()
+        BENCHMARKS[name]()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,127 @@
+"""`robokin show`: the table as a lecture prints it."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import robokin
+from robokin.description import library_names, load_any
+from robokin.model import Robot
+
+from .conftest import refused
+
+ROBOTS = [name for name in library_names() if isinstance(load_any(name), Robot)]
+
+
+def test_the_puma_s_table(call):
+    lines = call("show", "puma560").lines
+    assert lines[0] == "PUMA 560  standard convention, lengths in mm, angles in deg"
+    assert lines[2].split() == ["i", "joint", "type", "theta", "d", "a", "alpha", "limits"]
+    assert lines[4].split() == ["1", "waist", "revolute", "q1", "0", "0", "-90", "-160", "..", "160"]
+    assert lines[6].split() == ["3", "elbow", "revolute", "q3", "0", "-20.32", "90", "-45", "..", "225"]
+    text = "\n".join(lines)
+    for words in ("anthropomorphic", "spherical: axes 4, 5, 6", "F = 6(7 - 6 - 1) + 6 = 6", "pose home  90  0  90"):
+        assert words in text
+    assert "R = N - M  0" in text
+
+
+def test_the_puma_s_document(call):
+    record = call("show", "puma560", "--json").json
+    assert call("show", "puma560", "-f", "jsonl").jsonl == [record]
+    assert (record["robot"], record["name"], record["kind"]) == ("puma560", "PUMA 560", "robot")
+    assert record["units"] == {"length": "mm", "angle": "deg"}
+    assert (record["class"], record["n"], record["m"], record["redundancy"]) == ("anthropomorphic", 6, 6, 0)
+    assert record["poses"] == {"home": [90, 0, 90, 0, 0, 0]}
+    assert record["rows"][1] == {
+        "i": 2, "name": "shoulder", "type": "revolute", "variable": "q2", "theta": None, "d": 149.09, "a": 431.8,
+        "alpha": 0.0, "offset": 0.0, "limits": [-225.0, 45.0],
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", library_names())
+def test_every_table_is_plain_whole_and_fits_a_page(call, name):
+    answer = call("show", name)
+    assert (answer.status, answer.err) == (0, "")
+    assert "\x1b" not in answer.text
+    assert "…" not in answer.text
+    assert max(map(len, answer.lines)) <= 80
+    assert all(line == line.rstrip() for line in answer.lines)
+
+
+@pytest.mark.parametrize("name", library_names())
+def test_every_document_and_its_rows_in_other_units(call, name):
+    units = ["--length", "in", "--angle", "rad"]
+    (record,) = call("show", name, "-f", "jsonl", *units).jsonl
+    assert record["units"] == {"length": "in", "angle": "rad"}
+    table = call("show", name, "-f", "csv", *units).csv
+    rows = record["rows"] if record["kind"] == "robot" else record["joints"]
+    assert table[0] == list(rows[0])
+    assert len(table) == len(rows) + 1
+    assert all(len(row) == len(table[0]) for row in table)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_the_rows_are_the_robot_s(call, name):
+    robot = robokin.load(name)
+    record = call("show", name, "--json").json
+    assert record["joints"] == robot.types
+    assert [row["name"] for row in record["rows"]] == [row.name for row in robot.rows]
+    assert record["redundancy"] == record["n"] - record["m"]
+    for said, row in zip(record["rows"], robot.rows, strict=True):
+        if robot.convention != "frames":
+            assert said["a"] * robot.units.metres == pytest.approx(row.a, rel=1e-14)
+            assert said["alpha"] * robot.units.radians == pytest.approx(row.alpha, rel=1e-14)
+        if said["limits"] is None:
+            assert not math.isfinite(row.limits[0])
+        else:
+            unit = robot.units.radians if row.type == "revolute" else robot.units.metres
+            assert [limit * unit for limit in said["limits"]] == pytest.approx(row.limits, rel=1e-14)
+
+
+def test_other_units(call):
+    millimetres, inches = (
+        call("show", "puma560", "--json").json,
+        call("show", "puma560", "--json", "--length", "in").json,
+    )
+    assert inches["units"]["length"] == "in"
+    assert inches["rows"][1]["a"] == pytest.approx(millimetres["rows"][1]["a"] / 25.4)
+
+
+def test_parameters_can_be_set(call):
+    record = call("show", "scara-frames", "--set", "l1=500", "--json").json
+    assert record["parameters"]["l1"] == 500
+    assert record["rows"][0]["origin"][2][3] == 500
+
+
+def test_a_mechanism_has_links_and_joints(call):
+    record = call("show", "four-bar", "--json").json
+    assert (record["mechanism"], record["kind"], record["space"], record["grubler"]) == (
+        "four-bar",
+        "mechanism",
+        "planar",
+        1,
+    )
+    assert [joint["name"] for joint in record["joints"]] == ["A", "B", "C", "D"]
+    assert "F = 1" in call("show", "four-bar").text
+
+
+def test_names_are_words_and_no_style(call, tmp_path):
+    path = tmp_path / "arm.yaml"
+    path.write_text(
+        'robokin: 1\nname: "arm [/x] [bold]y :smile:"\ndescription: "[/red] [link=a]b"\n'
+        'joints:\n  - {name: "[/a]", type: R, a: 1}\n'
+    )
+    answer = call("show", path)
+    assert answer.status == 0
+    for words in ("arm [/x] [bold]y :smile:", "[/a]", "[/red] [link=a]b"):
+        assert words in answer.text
+    assert "arm [/x] [bold]y :smile:" in call("fk", path, "--q", "0").text
+
+
+def test_what_show_cannot_read(call):
+    refused(call("show", "puma56"), "did you mean puma560")
+    refused(call("show"), "ROBOT is missing")
+    refused(call("show", "puma560", "extra"), "'extra'", "expected nothing more")
+    refused(call("show", "puma560", "--length", "furlong"), "--length", "expected m, cm, mm or in")
