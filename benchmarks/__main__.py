@@ -1,4 +1,4 @@
-"""Runs every benchmark, or those whose names are given: `python -m benchmarks [forward] [pipes] [start]`."""
+"""Runs every benchmark, or those whose names are given: `python -m benchmarks [forward] [pipes] [inverse] [start]`."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import sys
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
-from benchmarks import forward, machine, pipes, start  # noqa: E402
+from benchmarks import forward, inverse, machine, pipes, start  # noqa: E402
 
-BENCHMARKS = {"forward": forward.run, "pipes": pipes.run, "start": start.run}
+BENCHMARKS = {"forward": forward.run, "pipes": pipes.run, "inverse": inverse.run, "start": start.run}
 
 
 def main() -> None:

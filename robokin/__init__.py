@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from robokin.errors import DescriptionError as DescriptionError
     from robokin.errors import InputError as InputError
     from robokin.errors import RobokinError as RobokinError
+    from robokin.inverse.solve import solve_ik as solve_ik
     from robokin.kinematics.forward import forward_kinematics as forward_kinematics
     from robokin.kinematics.forward import link_frames as link_frames
     from robokin.kinematics.jacobian import jacobian as jacobian
@@ -32,6 +33,7 @@ _HOMES = {
     "DescriptionError": "robokin.errors",
     "forward_kinematics": "robokin.kinematics.forward",
     "link_frames": "robokin.kinematics.forward",
+    "solve_ik": "robokin.inverse.solve",
     "jacobian": "robokin.kinematics.jacobian",
     "Mechanism": "robokin.model",
     "Robot": "robokin.model",

@@ -63,9 +63,7 @@ def test_the_robot_of_the_readme_works(tmp_path):
     assert yaml.safe_load(description)["name"] == "My arm"
     (tmp_path / "arm.yaml").write_text(description)
     for command in re.findall(r"`(robokin [^`]*arm\.yaml[^`]*)`", README):
-        done = subprocess.run(
-            [sys.executable, "-m", *command.split()], cwd=tmp_path, capture_output=True, text=True
-        )
+        done = subprocess.run([sys.executable, "-m", *command.split()], cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
 
 

@@ -21,6 +21,7 @@ COMMANDS = {
     "validate": "Check descriptions.",
     "schema": "The format of descriptions as a JSON Schema.",
     "fk": "Forward kinematics: where is the hand?",
+    "ik": "Inverse kinematics: every joint configuration that reaches a pose.",
     "frame": "Evaluate a transform expression.",
 }
 """Every command with its line in the overview; its module is `robokin.cli.commands.<name>_command`."""

@@ -26,6 +26,25 @@ def array_blocks(stream: IO[bytes], name: str, width: int, what: str) -> Iterato
     row that is not finite.
     """
     expected = f"expected an array of numbers (rows, {width}): {what}"
+    shape, fortran, dtype = array_header(stream, name, expected)
+    if width == 1 and len(shape) == 1:
+        shape = (*shape, 1)
+    rows = shape[0] if len(shape) == 2 else 1
+    if shape not in ((rows, width), (width,)):
+        raise InputError(f"{name}: found an array of shape {shape}, {expected}")
+    reader = ArrayReader(stream, name, rows, width, dtype)
+    done = 0
+    for block in reader.fortran_blocks() if fortran and len(shape) == 2 else reader.plain_blocks():
+        finite = np.isfinite(block)
+        if not finite.all():
+            row = done + int(np.argmin(finite.all(axis=1))) + 1
+            raise InputError(f"{name}, row {row}: found a number that is not finite, {expected}")
+        done += len(block)
+        yield block
+
+
+def array_header(stream: IO[bytes], name: str, expected: str) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """The shape of an array, whether it is in Fortran order, and the type of its numbers."""
     try:
         version = np.lib.format.read_magic(stream)
         old = version == (1, 0)
@@ -38,26 +57,14 @@ def array_blocks(stream: IO[bytes], name: str, width: int, what: str) -> Iterato
         raise InputError(f"{name}: this is no .npy file ({reason}), {expected}") from None
     if dtype.kind not in "fiu":
         raise InputError(f"{name}: found values of type {dtype}, {expected}")
-    if width == 1 and len(shape) == 1:
-        shape = (*shape, 1)
-    rows = shape[0] if len(shape) == 2 else 1
-    if shape not in ((rows, width), (width,)):
-        raise InputError(f"{name}: found an array of shape {shape}, {expected}")
-    reader = _Reader(stream, name, rows, width, dtype)
-    done = 0
-    for block in reader.fortran_blocks() if fortran and len(shape) == 2 else reader.plain_blocks():
-        finite = np.isfinite(block)
-        if not finite.all():
-            row = done + int(np.argmin(finite.all(axis=1))) + 1
-            raise InputError(f"{name}, row {row}: found a number that is not finite, {expected}")
-        done += len(block)
-        yield block
+    return shape, fortran, dtype
 
 
-class _Reader:
+class ArrayReader:
     """The numbers of an array, after its header."""
 
     def __init__(self, stream: IO[bytes], name: str, rows: int, width: int, dtype: np.dtype[Any]) -> None:
+        """`rows` and `width` are the counts of numbers that the header promises."""
         self.stream, self.name, self.rows, self.width, self.dtype = stream, name, rows, width, dtype
 
     def plain_blocks(self) -> Iterator[Array]:

@@ -38,6 +38,8 @@ class CsvReader(LineReader):
         self.picked: list[int] | None = None
         """Where in a line the wanted columns stand; None before the first line is seen."""
         self.width = columns.count
+        self.solution: int | None = None
+        """Where the number of a solution stands in a line that `ik` wrote: 0 tells that there is none."""
 
     def blocks(self) -> Iterator[Array]:
         """Blocks (m, k) of the wanted columns."""
@@ -107,6 +109,8 @@ class CsvReader(LineReader):
                 raise self.error(line, f"found the column '{name}' twice, expected it once")
         self.picked = [headings.index(name) for name in names]
         self.width = len(headings)
+        if "solution" in headings and "target" in headings:
+            self.solution = headings.index("solution")
 
     def fast_csv(self, block: bytes) -> Array | None:
         """A block of nothing but numbers and commas; None when it holds anything else."""
@@ -131,6 +135,9 @@ class CsvReader(LineReader):
             if len(cells) != self.width:
                 found = counted(len(cells), "value")
                 raise self.error(number, f"found {found}, expected {self.width}{self.meaning()}")
+            if self.solution is not None and cells[self.solution].strip() == "0":
+                self.unsolved += 1
+                continue
             picked = zip([cells[k] for k in self.picked or []], self.columns.angles, strict=True)
             rows.append([self.value(cell, self.units, angle, number) for cell, angle in picked])
         return np.array(rows, dtype=float).reshape(len(rows), self.columns.count)

@@ -27,13 +27,16 @@ class JsonReader(LineReader):
             rows = []
             for number, line in enumerate(self.decode(block, self.line + 1).split("\n"), start=self.line + 1):
                 if line.strip():
-                    rows.append(self.json_row(line, number))
+                    rows += self.json_rows(line, number)
             self.line += block.count(b"\n") + 1
             if rows:
                 yield np.array(rows, dtype=float).reshape(len(rows), self.columns.count)
 
-    def json_row(self, line: str, number: int) -> list[float]:
-        """The values of a line: a list, or what an object has under the key, in the units that it states."""
+    def json_rows(self, line: str, number: int) -> list[list[float]]:
+        """The rows of a line: a list, or what an object has under the key, in the units that it states.
+
+        An object such as `ik` writes has a row in each of its solutions.
+        """
         key, what = self.columns.key, self.columns.what
         expected = f'expected a list or an object with "{key}" on each line: {what}'
         try:
@@ -43,10 +46,21 @@ class JsonReader(LineReader):
             raise self.error(number, f"this is not JSON ({reason}), {expected}") from None
         units = self.units
         if isinstance(document, dict):
+            solutions = document.get("solutions")
+            if key not in document and isinstance(solutions, list):
+                self.unsolved += not solutions
+                stated = self.stated_units(document.get("units"), number)
+                found = [solution.get(key) if isinstance(solution, dict) else None for solution in solutions]
+                return [self.json_row(row, stated, number, expected) for row in found]
             if key not in document:
                 raise self.error(number, f"the key '{key}' is missing, {expected}")
             units = self.stated_units(document.get("units"), number)
             document = document[key]
+        return [self.json_row(document, units, number, expected)]
+
+    def json_row(self, document: Any, units: Units, number: int, expected: str) -> list[float]:
+        """The values of a list."""
+        what = self.columns.what
         if not isinstance(document, list):
             raise self.error(number, f"found {json.dumps(document)[:40]}, {expected}")
         if len(document) != self.columns.count:

@@ -56,6 +56,8 @@ class LineReader:
         self.units = units
         self.line = 0
         """Number of the last line that was handed on."""
+        self.unsolved = 0
+        """How many lines said that inverse kinematics had no solution: they hold no configuration."""
 
     def error(self, line: int, message: str) -> InputError:
         """An error that names the stream and the line."""

@@ -15,6 +15,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.cli import say
 from robokin.cli.lines import BYTE_ORDER_MARK, Columns
 from robokin.errors import InputError
 from robokin.units import Units
@@ -59,12 +60,18 @@ def _blocks(stream: Any, name: str, columns: Columns, units: Units) -> Iterator[
     if ending == ".npy" or head.startswith(b"\x93NUMPY"):
         from robokin.cli.array_rows import array_blocks
 
-        return array_blocks(buffered, name, columns.count, columns.what)
+        yield from array_blocks(buffered, name, columns.count, columns.what)
+        return
     brace = head.removeprefix(BYTE_ORDER_MARK).lstrip()[:1] in (b"{", b"[")
     if ending == ".jsonl" or (brace and ending != ".csv"):
         from robokin.cli.json_rows import JsonReader
 
-        return JsonReader(buffered, name, columns, units).blocks()
-    from robokin.cli.csv_rows import CsvReader
+        reader: Any = JsonReader(buffered, name, columns, units)
+    else:
+        from robokin.cli.csv_rows import CsvReader
 
-    return CsvReader(buffered, name, columns, units).blocks()
+        reader = CsvReader(buffered, name, columns, units)
+    yield from reader.blocks()
+    if reader.unsolved:
+        verb = "target has" if reader.unsolved == 1 else "targets have"
+        say(f"{name}: {reader.unsolved} {verb} no solution and {'is' if reader.unsolved == 1 else 'are'} left out")

@@ -24,6 +24,9 @@ Array = NDArray[np.float64]
 
 INFINITE = re.compile(r"[-+]?\.?(inf|infinity|nan)", re.IGNORECASE)
 
+GREATEST = 1e90
+"""Greatest length [m] or angle [rad]: no machine is near it, and the cube of a sum of them is still a number."""
+
 NO_WORD = re.compile(r"[\x00-\x1f\x7f-\x9f\ud800-\udfff]")
 """Characters that a quoted text can smuggle in by an escape and that no name or line of text has."""
 
@@ -93,7 +96,15 @@ def raw_number_of(node: Node, scope: Scope, what: str, *, angle: bool = False) -
 
 def number_of(node: Node, context: Context, what: str, *, angle: bool) -> float:
     """A length [m] or an angle [rad]."""
-    return raw_number_of(node, context.scope, what, angle=angle) * context.factor(angle)
+    number = raw_number_of(node, context.scope, what, angle=angle) * context.factor(angle)
+    _check_size(abs(number), node, what)
+    return number
+
+
+def _check_size(size: float, node: Node, what: str) -> None:
+    """Refuse what later sums and products could not hold; size [m | rad]."""
+    if size > GREATEST:
+        raise node.mark.error(f"found {describe(node)} as {what}, expected a size of a machine, below {GREATEST:g}")
 
 
 def list_of(node: Node, what: str, length: int | tuple[int, int] | None = None) -> list[Node]:
@@ -113,9 +124,10 @@ def vector_of(node: Node, context: Context, what: str, *, direction: bool, plane
     items = list_of(node, what, (2, 3) if plane else 3)
     numbers = [raw_number_of(item, context.scope, what) for item in items]
     vector = np.array([*numbers, 0.0][:3])
-    if not direction:
-        return vector * context.units.metres
     greatest = float(np.max(np.abs(vector)))
+    if not direction:
+        _check_size(greatest, node, what)
+        return vector * context.units.metres
     if greatest < ZERO_AXIS:
         raise node.mark.error(f"found zero as {what}, expected a direction")
     vector /= greatest  # the squares of great numbers would not be finite
@@ -130,9 +142,11 @@ def transform_of(node: Node, context: Context, what: str) -> Array:
             f"found {describe(node)}, expected {what}: a transform expression such as Trans(0, 0, 1) Rot(z, 90)"
         )
     try:
-        return evaluate_transform("" if node.empty else node.text, context.scope, context.units)
+        T = evaluate_transform("" if node.empty else node.text, context.scope, context.units)
     except ExpressionError as error:
         raise _located(node.mark, what, error) from None
+    _check_size(float(np.max(np.abs(T))), node, what)
+    return T
 
 
 def names_of(node: Node, what: str) -> tuple[str, ...]:

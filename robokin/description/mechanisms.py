@@ -15,6 +15,7 @@ from robokin.description.cells import (
     flag_of,
     list_of,
     names_of,
+    number_of,
     raw_number_of,
     text_of,
     vector_of,
@@ -165,5 +166,4 @@ def _pitch(cells: MappingType[str, Node], where: str, context: Context) -> float
     """Advance [m/rad] of a helical joint; the file states it for one turn."""
     if "pitch" not in cells:
         return 0.0
-    per_turn = raw_number_of(cells["pitch"], context.scope, f"pitch {where}") * context.units.metres
-    return per_turn / (2.0 * math.pi)
+    return number_of(cells["pitch"], context, f"pitch {where}", angle=False) / (2.0 * math.pi)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 from typing import Literal
 
@@ -82,6 +82,11 @@ class Mechanism:
         letters = {"fixed": "F", "revolute": "R", "prismatic": "P", "helical": "H", "cylindrical": "C",
                    "universal": "U", "spherical": "S", "planar": "E"}  # fmt: skip
         return "".join(letters.get(joint.type, "G") * joint.multiplicity for joint in self.joints)
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        """Copied and pickled by its fields: the read-only view of a mapping cannot be pickled."""
+        values = (getattr(self, part.name) for part in fields(self))
+        return type(self), tuple(dict(value) if isinstance(value, MappingProxyType) else value for value in values)
 
     def __repr__(self) -> str:
         """A line that names the mechanism."""

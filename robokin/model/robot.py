@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from functools import cached_property
 from types import MappingProxyType
@@ -136,6 +136,11 @@ class Robot:
         low, high = self.limits[:, 0], self.limits[:, 1]
         inside = (q >= low - LIMIT_TOLERANCE) & (q <= high + LIMIT_TOLERANCE)
         return np.asarray(np.all(inside, axis=-1))
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        """Copied and pickled by its fields: the read-only view of a mapping cannot be pickled."""
+        values = (getattr(self, part.name) for part in fields(self))
+        return type(self), tuple(dict(value) if isinstance(value, MappingProxyType) else value for value in values)
 
     def __repr__(self) -> str:
         """A line that names the robot."""

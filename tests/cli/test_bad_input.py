@@ -109,7 +109,7 @@ LINES = {
 
 
 @pytest.mark.parametrize(("line", "fragments"), LINES.values(), ids=LINES.keys())
-@pytest.mark.parametrize("before", ["", "q1,q2,q3,q4,q5,q6\n", "# joints\n\n"], ids=["rows", "header", "comment"])
+@pytest.mark.parametrize("before", ["", "# joints\n\nq1,q2,q3,q4,q5,q6\n"], ids=["rows", "header"])
 def test_a_wrong_line_names_its_number(call, line, fragments, before):
     for number, ending in ((5, "\r\n"), (4711, "\n")):
         lines = before + GOOD * (number - 1 - before.count("\n")) + line + GOOD * 10
@@ -200,7 +200,7 @@ def answered(answer, *statuses):
         assert answer.err.startswith("robokin: ")
 
 
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=80)
 @given(st.lists(PIECES, max_size=12), st.sampled_from(["", " ", ","]))
 def test_any_vector_and_any_expression_get_an_answer(pieces, joint):
     text = joint.join(pieces)
@@ -209,7 +209,7 @@ def test_any_vector_and_any_expression_get_an_answer(pieces, joint):
     answered(invoke("frame", "Rot(z,30)", f"--point={text}", "--json"), 0, 2)
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=60)
 @given(st.one_of(st.binary(max_size=60), st.lists(PIECES, max_size=30).map(lambda p: ",".join(p).encode())))
 def test_any_bytes_get_an_answer(stdin):
     for more in ([], ["-f", "jsonl"]):
@@ -221,8 +221,10 @@ def test_any_bytes_get_an_answer(stdin):
 WORDS = ["fk", "show", "frame", "validate", "schema", "puma560", "--q", "-", "home", "-f", "--json", "--set", "-h"]
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=60)
 @given(st.lists(st.one_of(st.sampled_from(WORDS), st.text(max_size=8)), min_size=1))
 def test_any_words_get_an_answer(words):
     # What would write a file, or read one that is there, is left out.
-    answered(invoke(*(word for word in words if not word.startswith(("-o", "--o", "-i", "--i", ".")))), 0, 2)
+    words = [word for word in words if not word.startswith(("-o", "--o", "-i", "--i", "."))]
+    if words:
+        answered(invoke(*words), 0, 2)

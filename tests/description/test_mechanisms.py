@@ -12,8 +12,7 @@ import robokin
 from robokin.description import load, read_text
 from robokin.errors import InputError
 
-# The f of each joint type, as the format's contract and every text on Grübler's count state them:
-# M. Yim, Robotics: Fundamentals (lecture, University of Pennsylvania), week 5.
+# The f of each joint type, as docs/format.md states them.
 FREEDOMS = {
     "fixed": 0, "revolute": 1, "prismatic": 1, "helical": 1, "cylindrical": 2, "universal": 2, "spherical": 3,
     "planar": 3, "rolling": 1, "gear": 2, "cam": 2,

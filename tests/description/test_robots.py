@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
 
 import numpy as np
 import pytest
-from description.texts import DEGREES, HEAD, arm, cell, error_of, only_row, place
+from description.texts import DEGREES, HEAD, arm, cell, error_of, linkage, only_row, place
 from kinematics.reference import forward, rot, trans
 
 import robokin
@@ -412,6 +414,38 @@ def test_a_wrong_row_of_frames(row, column, said):
 def test_a_wrong_table(text, at, said):
     error = error_of(text)
     assert said in error.message
+    assert f"{error.line}:{error.column}" == at
+
+
+def test_a_robot_can_be_copied_and_pickled():
+    robot = robokin.load("puma560")
+    for again in (copy.deepcopy(robot), pickle.loads(pickle.dumps(robot))):
+        assert (again.name, again.units, again.types, dict(again.parameters)) == (
+            robot.name, robot.units, robot.types, dict(robot.parameters),
+        )  # fmt: skip
+        q = again.poses["home"]
+        assert np.array_equal(robokin.forward_kinematics(again, q), robokin.forward_kinematics(robot, q))
+        with pytest.raises(ValueError, match="read-only"):
+            q[0] = 1.0
+
+
+@pytest.mark.parametrize(
+    ("text", "at"),
+    [
+        (arm("type: R, a: 1e308", head=HEAD), "4:18"),
+        (arm("type: R, alpha: -1e91", head=HEAD), "4:22"),
+        (arm("type: P, limits: [-1e100, 1]", head=HEAD), "4:24"),
+        (arm("type: P, offset: 10**99", head=HEAD), "4:23"),
+        (arm(head=HEAD, tail="tool: Trans(0, 0, 1e200)\n"), "5:7"),
+        (arm(head=HEAD, tail="poses: {p: [1e300]}\n"), "5:13"),
+        (linkage("type: revolute, links: [ground, crank], at: [0, 1e300]"), "6:50"),
+        (linkage("type: helical, links: [ground, crank], pitch: -1e300"), "6:52"),
+    ],
+)
+def test_what_no_machine_measures_is_refused(text, at):
+    """So that no sum or product of what a file holds can overflow."""
+    error = error_of(text)
+    assert "expected a size of a machine, below 1e+90" in error.message
     assert f"{error.line}:{error.column}" == at
 
 

@@ -94,6 +94,7 @@ def robot_record(robot: Robot, units: Units) -> dict[str, Any]:
         "m": structure.dimension,
         "redundancy": structure.redundancy,
         "grubler": grubler(6, robot.n + 1, [1] * robot.n),
+        "inverse": _inverse_record(robot),
         "parameters": dict(robot.parameters),
         "base": poses_in(robot.base.copy(), units).tolist(),
         "tool": poses_in(robot.tool.copy(), units).tolist(),
@@ -130,6 +131,16 @@ def _row_record(i: int, row: Joint, variable: str | None, convention: str, units
     low, high = row.limits
     record["limits"] = None if np.isinf(low) else [own(low), own(high)]
     return record
+
+
+def _inverse_record(robot: Robot) -> dict[str, Any] | None:
+    """How the inverse kinematics is solved, why so, and whether every solution is found."""
+    from robokin.inverse.analysis import analysis_of
+
+    if not robot.n:
+        return None
+    analysis = analysis_of(robot)
+    return {"method": analysis.method, "reason": analysis.sentence, "complete": analysis.complete}
 
 
 def mechanism_record(mechanism: Mechanism, units: Units) -> dict[str, Any]:
@@ -195,6 +206,10 @@ def _robot_table(record: dict[str, Any]) -> bytes:
         ("R = N - M", f"{record['redundancy']}"),
         ("Grübler", f"F = 6({record['n'] + 1} - {record['n']} - 1) + {record['n']} = {record['grubler']}"),
     ]
+    if record["inverse"]:
+        inverse = record["inverse"]
+        whole = "every solution" if inverse["complete"] else "some of infinitely many solutions"
+        entries.append(("inverse", f"{inverse['method']}: {inverse['reason']}; {whole}"))
     if record["parameters"]:
         listed = ", ".join(f"{name} = {show(value)}" for name, value in record["parameters"].items())
         entries.append(("parameters", listed))

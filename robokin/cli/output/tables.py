@@ -24,6 +24,11 @@ def table() -> Table:
     return Table(box=box.SIMPLE_HEAD, header_style="bold", pad_edge=False, show_edge=False)
 
 
+def narrow_table() -> Table:
+    """An empty table with a single blank between its columns, for rows that just fit a page."""
+    return Table(box=box.SIMPLE_HEAD, padding=(0, 0), pad_edge=False, show_edge=False, header_style="bold")
+
+
 def number_table(columns: Sequence[str], rows: Sequence[Sequence[float]], labels: Sequence[str] = ()) -> Table:
     """Numbers in columns with aligned decimals, each row after its label."""
     drawn = table()

@@ -77,11 +77,12 @@ def csv_rows(table: Array) -> bytes:
     return "".join(",".join(map(repr, row)) + "\n" for row in rows).encode()
 
 
-def csv_records(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
-    """Rows of mixed values, quoted where they need it."""
+def csv_records(columns: Sequence[str] | None, rows: Iterable[Sequence[Any]]) -> bytes:
+    """Rows of mixed values, quoted where they need it, below their header if there is one."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
+    if columns is not None:
+        writer.writerow(columns)
     writer.writerows(rows)
     return encode(text.getvalue())
 

@@ -1,0 +1,195 @@
+"""`robokin ik`: poses to joint values, every solution."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from robokin.cli import DONE, NO
+from robokin.cli.options import (
+    AngleOption,
+    ArrayOutputOption,
+    FormatOption,
+    JsonOption,
+    LengthOption,
+    RobotArgument,
+    SetOption,
+    choose,
+    effective_units,
+    output_format,
+    parameter_overrides,
+)
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from robokin.units import Units
+
+    Array = NDArray[np.float64]
+
+METHODS = ("auto", "analytic", "numeric")
+
+DIGITS = 18
+"""Digits of a whole number that is read."""
+
+
+def command(
+    robot: RobotArgument,
+    pose: Annotated[
+        str | None, typer.Option("--pose", metavar="EXPR", help="The target as a transform expression.")
+    ] = None,
+    matrix: Annotated[
+        str | None,
+        typer.Option("--matrix", metavar="[[..]]|FILE", help="The target as a 4×4 matrix, or a file of one."),
+    ] = None,
+    xyz: Annotated[
+        str | None, typer.Option("--xyz", metavar="X,Y,Z", help="The target's position; alone: any orientation.")
+    ] = None,
+    rpy: Annotated[str | None, typer.Option("--rpy", metavar="R,P,Y", help="With --xyz: roll, pitch, yaw.")] = None,
+    euler: Annotated[
+        str | None, typer.Option("--euler", metavar="PHI,THETA,PSI", help="With --xyz: ZYZ Euler angles.")
+    ] = None,
+    quat: Annotated[
+        str | None, typer.Option("--quat", metavar="W,X,Y,Z", help="With --xyz: a quaternion of length 1.")
+    ] = None,
+    approach: Annotated[
+        str | None, typer.Option("--approach", metavar="X,Y,Z", help="With --xyz: the tool's z axis only, any roll.")
+    ] = None,
+    xy: Annotated[str | None, typer.Option("--xy", metavar="X,Y", help="The position for a planar arm.")] = None,
+    phi: Annotated[str | None, typer.Option("--phi", metavar="PHI", help="With --xy: the hand's angle.")] = None,
+    input: Annotated[
+        str | None,
+        typer.Option(
+            "--input",
+            "-i",
+            metavar="FILE",
+            help="A pose a line: x, y, z, roll, pitch, yaw or what else `robokin fk` writes (.csv, .jsonl, .npy); "
+            "- for standard input.",
+        ),
+    ] = None,
+    near: Annotated[
+        str | None,
+        typer.Option("--near", metavar="Q", help="Order by the greatest joint move from here; values or a named pose."),
+    ] = None,
+    method: Annotated[
+        str | None, typer.Option("--method", metavar="METHOD", help="auto, analytic or numeric.  [default: auto]")
+    ] = None,
+    no_limits: Annotated[bool, typer.Option("--no-limits", help="Also solutions outside the joint limits.")] = False,
+    max_: Annotated[
+        str | None, typer.Option("--max", metavar="N", help="At most so many solutions for a target.")
+    ] = None,
+    seed: Annotated[
+        str | None,
+        typer.Option("--seed", metavar="N", help="Seed of what is searched for.  [default: 0]"),
+    ] = None,
+    tol_position: Annotated[
+        str | None, typer.Option("--tol-position", metavar="L", help="Take the nearest pose when it is off by no more.")
+    ] = None,
+    tol_angle: Annotated[
+        str | None, typer.Option("--tol-angle", metavar="A", help="Take the nearest pose when it is turned by no more.")
+    ] = None,
+    output: ArrayOutputOption = None,
+    format: FormatOption = None,
+    json: JsonOption = False,
+    angle: AngleOption = None,
+    length: LengthOption = None,
+    set_: SetOption = None,
+) -> int:
+    """Inverse kinematics: every joint configuration that reaches a pose.
+
+    A target is a pose, a position with the direction of the tool's z axis, or a position alone. Angles and
+    lengths are in the description's units unless --angle and --length say otherwise. Solutions are exact; with
+    a tolerance, the nearest pose that can be reached will do where it is within it.
+
+    The status is 3 when there is no solution, or in a batch when a target has none; the reason is said, and the
+    configuration that comes nearest. A CSV has a row for each solution, which robokin fk reads; a target without
+    one has a row with solution 0, which robokin fk leaves out.
+
+    Examples:
+        robokin ik puma560 --pose "Trans(-149.09,921.12,20.32) RPY(0,90,90)"
+        robokin ik puma560 --xyz 500,100,300 --rpy 180,0,45 --near home --max 1
+        robokin ik puma560 --xyz 500,100,300 --approach 0,0,-1 --json
+        robokin ik planar3r-brac --xy 26.4743,50.8716 --phi 85
+        robokin ik scorbot --xyz 300,40,200 --rpy 0,170,8 --tol-angle 1
+        robokin fk puma560 -i joints.csv -f csv | robokin ik puma560 -i - -f csv
+    """
+    from robokin.cli import say
+    from robokin.cli.answers import Answers
+    from robokin.cli.arguments import joint_factors, load_robot, parse_configuration
+    from robokin.cli.output.numbers import counted
+    from robokin.cli.output.sink import format_of, sink
+    from robokin.cli.target_rows import read_targets
+    from robokin.cli.targets import parse_target
+    from robokin.errors import InputError
+
+    kind = format_of(output, output_format(format, json), arrays=True)
+    model = load_robot(robot, parameter_overrides(set_))
+    if not model.n:
+        raise InputError(f"{model.name} has no joints, expected a robot that can move")
+    units = effective_units(model.units, length, angle)
+    options = {
+        "--pose": pose, "--matrix": matrix, "--xyz": xyz, "--rpy": rpy, "--euler": euler, "--quat": quat,
+        "--approach": approach, "--xy": xy, "--phi": phi,
+    }  # fmt: skip
+    given = [name for name, value in options.items() if value is not None]
+    if input is not None and given:
+        raise InputError(f"--input and {given[0]} exclude each other, expected one of them")
+    arguments: dict[str, Any] = {
+        "limits": not no_limits,
+        "method": choose(method, METHODS, "--method") or "auto",
+        "most": _count(max_, "--max", 1),
+        "seed": _count(seed, "--seed", 0) or 0,
+    }
+    if near is not None:
+        arguments["near"] = parse_configuration(near, model, units, "--near") * joint_factors(model, units)
+    tolerances = (
+        _tolerance(tol_position, "--tol-position", units, angle=False),
+        _tolerance(tol_angle, "--tol-angle", units, angle=True),
+    )
+    if input is None:
+        target = parse_target(options, model, units)
+        for note in target.notes:
+            say(note)
+        arguments["task"] = target.task
+        blocks: Iterable[Array] = iter([target.T[None]])
+    else:
+        blocks = read_targets(input, units)
+
+    answers = Answers(model, units, tolerances, arguments, alone=input is None)
+    with sink(output) as stream:
+        for data in answers.write(kind, blocks, stream):
+            stream.write(data)
+            stream.flush()  # whoever waits for an answer gets it before the next question
+    if not answers.alone and answers.unreached:
+        verb = "has" if answers.unreached == 1 else "have"
+        say(f"{answers.unreached} of {counted(answers.count, 'target')} {verb} no solution")
+    return NO if answers.unreached else DONE
+
+
+def _tolerance(text: str | None, option: str, units: Units, *, angle: bool) -> float | None:
+    """A tolerance [m or rad]; None for none."""
+    from robokin.cli.arguments import parse_numbers
+    from robokin.errors import InputError
+
+    if text is None:
+        return None
+    (value,) = parse_numbers(text, option, [angle], units, "an angle" if angle else "a length")
+    if value < 0.0:
+        raise InputError(f"{option}: found {text}, expected 0 or more")
+    return float(value * (units.radians if angle else units.metres))
+
+
+def _count(text: str | None, option: str, least: int) -> int | None:
+    from robokin.errors import InputError
+
+    if text is None:
+        return None
+    digits = text.strip()
+    if not (digits.isascii() and digits.isdecimal()) or int(digits[:DIGITS]) < least:
+        raise InputError(f"{option}: found '{text}', expected a whole number of {least} or more")
+    if len(digits) > DIGITS:
+        raise InputError(f"{option}: found a number of {len(digits)} digits, expected at most {DIGITS}")
+    return int(digits)

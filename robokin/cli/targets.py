@@ -1,0 +1,174 @@
+"""Targets of `robokin ik`: what the options and the lines of a batch say, as poses."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.cli.arguments import parse_numbers
+from robokin.cli.target_rows import UNIT_LENGTH, near_enough, pose_documents, pose_in_document, read_targets
+from robokin.description.expressions import Scope
+from robokin.description.transforms import evaluate_transform, pose_from_matrix
+from robokin.errors import ExpressionError, InputError
+from robokin.model import Robot
+from robokin.spatial import (
+    rotation_from_euler,
+    rotation_from_quaternion,
+    rotation_from_rpy,
+    transform,
+)
+from robokin.units import Units
+
+Array = NDArray[np.float64]
+
+LEVEL = 1e-9
+"""Metres, and sines of an angle: what differs by less lies at one height."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """One target: T (4, 4) [m], the task (pose, approach or position), and sentences the user should see."""
+
+    T: Array
+    task: str
+    notes: tuple[str, ...] = ()
+
+
+def parse_target(options: dict[str, str | None], robot: Robot, units: Units) -> Target:
+    """The target that the options say. Raises InputError when they say none, or two."""
+    kinds = [name for name in ("--pose", "--matrix", "--xyz", "--xy") if options.get(name) is not None]
+    if len(kinds) != 1:
+        said = f"found {' and '.join(kinds)}" if kinds else "there is no target"
+        raise InputError(f"{said}, expected one of --pose, --matrix, --xyz, --xy or --input")
+    turns = [name for name in ("--rpy", "--euler", "--quat", "--approach") if options.get(name) is not None]
+    if turns and kinds != ["--xyz"]:
+        raise InputError(f"{turns[0]} goes with --xyz, expected it without {kinds[0]}")
+    if options.get("--phi") is not None and kinds != ["--xy"]:
+        raise InputError("--phi goes with --xy, the target of a planar arm")
+    if len(turns) > 1:
+        raise InputError(f"{' and '.join(turns)} exclude each other, expected one of them")
+    text = options[kinds[0]] or ""
+    if kinds == ["--pose"]:
+        notes: list[str] = []
+        try:
+            T = evaluate_transform(text, Scope(degrees=units.degrees), units, notes)
+        except ExpressionError as error:
+            raise InputError(f"--pose: {error}") from None
+        return Target(_placed(T[:3, :3], T[:3, 3], "--pose", units), "pose", tuple(notes))
+    if kinds == ["--matrix"]:
+        return _matrix(text, units)
+    if kinds == ["--xy"]:
+        return _planar(text, options.get("--phi"), robot, units)
+    p = parse_numbers(text, "--xyz", [False] * 3, units, "x, y, z") * units.metres
+    if not turns:
+        return Target(_placed(np.eye(3), p, "--xyz", units), "position")
+    R, task = _rotation(turns[0], options[turns[0]] or "", units)
+    return Target(_placed(R, p, "--xyz", units), task)
+
+
+def _rotation(option: str, text: str, units: Units) -> tuple[Array, str]:
+    if option == "--rpy":
+        angles = parse_numbers(text, option, [True] * 3, units, "roll, pitch, yaw") * units.radians
+        return rotation_from_rpy(angles), "pose"
+    if option == "--euler":
+        angles = parse_numbers(text, option, [True] * 3, units, "phi, theta, psi") * units.radians
+        return rotation_from_euler(angles), "pose"
+    if option == "--quat":
+        return rotation_from_quaternion(_quaternion(text, option, units)), "pose"
+    z = parse_numbers(text, option, [False] * 3, units, "x, y, z of the tool's z axis")
+    z = z / max(np.max(np.abs(z)), np.finfo(float).tiny)
+    length = float(np.linalg.norm(z))
+    if length < 0.5:
+        raise InputError(f"{option}: found a direction of length zero, expected the direction of the tool's z axis")
+    z = z / length
+    # Any x axis serves: the roll about z is left open.
+    x = np.cross([0.0, 1.0, 0.0] if abs(z[1]) < 0.9 else [1.0, 0.0, 0.0], z)
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(z, x), z], axis=1), "approach"
+
+
+def _quaternion(text: str, option: str, units: Units) -> Array:
+    values = parse_numbers(text, option, [False] * 4, units, "w, x, y, z")
+    length = math.hypot(*values)
+    if not abs(length - 1.0) <= UNIT_LENGTH:
+        raise InputError(f"{option}: found a quaternion of length {length:.6g}, expected 1")
+    return values / length
+
+
+def _planar(text: str, phi: str | None, robot: Robot, units: Units) -> Target:
+    from robokin.kinematics.forward import forward_kinematics
+    from robokin.kinematics.structure import structure_of
+
+    if structure_of(robot).arm != "planar":
+        raise InputError(f"--xy is for planar arms, and {robot.name} is none, expected --xyz")
+    x, y = parse_numbers(text, "--xy", [False] * 2, units, "x, y") * units.metres
+    # The arm's height and the tilt of its hand are the same at every configuration.
+    zero, ones = forward_kinematics(robot, np.array([np.zeros(robot.n), np.ones(robot.n)]))
+    if abs(zero[2, 3] - ones[2, 3]) > LEVEL or np.max(np.abs(zero[2, :3] - ones[2, :3])) > LEVEL:
+        raise InputError(f"--xy: {robot.name} does not move in the plane of x and y, expected --xyz")
+    p = np.array([x, y, zero[2, 3]])
+    if phi is None:
+        return Target(_placed(zero[:3, :3], p, "--xy", units), "position")
+    (angle,) = parse_numbers(phi, "--phi", [True], units, "the hand's angle to x") * units.radians
+    if np.hypot(zero[0, 0], zero[1, 0]) < LEVEL:
+        raise InputError(f"--phi: the x axis of {robot.name}'s hand is upright, expected --xyz and --rpy")
+    turn = rotation_from_rpy([0.0, 0.0, angle - np.arctan2(zero[1, 0], zero[0, 0])])
+    return Target(_placed(turn @ zero[:3, :3], p, "--xy", units), "pose")
+
+
+def _placed(R: Array, p: Array, option: str, units: Units) -> Array:
+    try:
+        return near_enough(transform(R, p), units)
+    except ValueError as error:
+        raise InputError(f"{option}: {error}") from None
+
+
+def _matrix(text: str, units: Units) -> Target:
+    inline = text.lstrip().startswith(("[", "{"))
+    name = "--matrix" if inline else f"--matrix {text}"
+    try:
+        T, note = _document(text, name, units) if inline else _matrix_file(Path(text), name, units)
+    except ValueError as error:
+        raise InputError(f"{name}: {error}") from None
+    return Target(T, "pose", (note,) if note else ())
+
+
+def _document(text: str, name: str, units: Units) -> tuple[Array, str]:
+    try:
+        document = json.loads(text)
+    except (ValueError, RecursionError):
+        raise InputError(f"{name}: this is not JSON, expected [[…], […], […], […]]") from None
+    return pose_in_document(document, pose_documents(io.BytesIO(), name, units))
+
+
+def _matrix_file(path: Path, name: str, units: Units) -> tuple[Array, str]:
+    """A file of one pose: an array, JSON, rows of numbers, or a CSV with a header, as `fk` and `frame` write them."""
+    try:
+        data = path.read_bytes()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{name}: {reason}, expected [[…], …] or a file with a 4×4 matrix") from None
+    if not data.startswith(b"\x93NUMPY"):
+        try:
+            text = data.decode().removeprefix("\ufeff")
+        except UnicodeDecodeError:
+            raise InputError(f"{name}: found bytes that are no text, expected 4 rows of 4 numbers") from None
+        if text.lstrip().startswith(("[", "{")):
+            return _document(text, name, units)
+        lines = [line.replace(",", " ").split() for line in text.splitlines() if line.strip(" \t,")]
+        with contextlib.suppress(ValueError):
+            rows = [[float(cell) for cell in line] for line in lines if not line[0].startswith("#")]
+            if len(rows) != 1:
+                T, note = pose_from_matrix(rows, units)
+                return near_enough(T, units), note
+    poses = [T for block in read_targets(str(path), units) for T in block]
+    if len(poses) != 1:
+        raise InputError(f"{name}: found {len(poses)} poses, expected one; --input {path} reads many")
+    return poses[0], ""

@@ -1,0 +1,1 @@
+"""Inverse kinematics: every joint configuration that reaches a pose."""

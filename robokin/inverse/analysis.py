@@ -1,0 +1,250 @@
+"""What is decided once for an arm and a task: how its inverse kinematics is solved, and why so.
+
+Every arm is brought to a loop of six joints:
+
+- What the task leaves open (the roll about the approach direction, the whole orientation) becomes joints at
+  the tool that may take any value.
+- An arm with more joints than directions it can move in keeps a window of consecutive joints that can do all
+  that the arm can; the joints before and after it are held at chosen values, which only moves the target.
+- An arm or window with fewer than six joints gets virtual joints that must come out as zero.
+
+The loop then has a closed form (three axes that meet in a point, three parallel axes, three sliding joints)
+or is solved by elimination.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Literal
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.elimination import Elimination, choose_splits
+from robokin.inverse.loop import Loop, chain_size, loop_of
+from robokin.inverse.numeric import error_and_jacobian
+from robokin.inverse.padding import Padded, joint_frames_of, padded_chains
+from robokin.inverse.parallel import ThreeParallel
+from robokin.inverse.spherical import SphericalTriple
+from robokin.inverse.three_prismatic import ThreePrismatic
+from robokin.kinematics.chain import Chain, chain_of, z_to
+from robokin.model import Robot
+from robokin.spatial import transform
+
+Array = NDArray[np.float64]
+Task = Literal["pose", "approach", "position"]
+
+CLOSED_FORMS = (SphericalTriple, ThreePrismatic, ThreeParallel)
+
+RANK = 1e-6
+"""Singular values below this part of the greatest are zero: the joints depend on each other everywhere."""
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """Joints `first` to `last` - 1 of a chain, to be solved for; the others are held.
+
+    dimension: how many directions the whole chain can move the tool in.
+    """
+
+    first: int
+    last: int
+    dimension: int
+
+
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """How an arm's inverse kinematics is solved for a task.
+
+    chain: the arm's joints and after them the `open` joints that the task leaves free; window: what is
+    solved for; six: the window padded to six joints; loop: the same as a loop; solver: what solves it;
+    method, sentence: its name and why it applies; complete: whether it finds every solution.
+    """
+
+    chain: Chain
+    open: int
+    size: float
+    window: Window
+    six: Padded | None
+    loop: Loop | None
+    solver: Any
+    method: str
+    sentence: str
+    complete: bool
+
+    @property
+    def redundancy(self) -> int:
+        """How many joints are held: the dimension of the self-motion."""
+        return self.chain.n - (self.window.last - self.window.first)
+
+
+_kept: WeakKeyDictionary[Robot, dict[str, Analysis]] = WeakKeyDictionary()
+
+
+def analysis_of(robot: Robot, task: Task = "pose") -> Analysis:
+    """The analysis of a robot for a task, made when it is first asked for."""
+    kept = _kept.setdefault(robot, {})
+    if task not in kept:
+        kept[task] = analyse(chain_of(robot), task)
+    return kept[task]
+
+
+def analyse(chain: Chain, task: Task = "pose") -> Analysis:
+    """Decide how the inverse kinematics of a chain is solved."""
+    size = chain_size(chain)
+    whole, open_joints = with_open_joints(chain, task)
+    windows = _windows(whole, size)
+    best: Analysis | None = None
+    for window in windows:
+        part = window_chain(whole, window)
+        found = _closed_form(part)
+        if found is not None:
+            six, loop, solver = found
+            method, reason = _named(solver, six, whole, part)
+            held = whole.n - part.n
+            sentence = _sentence(reason, six, held)
+            return Analysis(whole, open_joints, size, window, six, loop, solver, method, sentence, held == 0)
+    for window in windows:
+        best = _by_elimination(whole, open_joints, size, window)
+        if best is not None:
+            return best
+    window = Window(0, whole.n, _dimension(whole, size, 0, whole.n))
+    sentence = "no six of its joints can do all that the arm can: damped least squares from many starts"
+    return Analysis(whole, open_joints, size, window, None, None, None, "numeric", sentence, complete=False)
+
+
+def with_open_joints(chain: Chain, task: Task) -> tuple[Chain, int]:
+    """The chain with joints at the tool for what the task leaves open: none, the roll, or all three turns."""
+    axes = {"pose": (), "approach": (2,), "position": (0, 1, 2)}[task]
+    if not axes:
+        return chain, 0
+    frames = [z_to(tuple(float(part) for part in np.eye(3)[axis])) for axis in axes]
+    constants = [*chain.constants[:-1], chain.constants[-1] @ frames[0]]
+    for before, after in pairwise(frames):
+        constants.append(before.T @ after)
+    constants.append(frames[-1].T)
+    turning = np.concatenate([chain.revolute, np.ones(len(axes), dtype=bool)])
+    offsets = np.concatenate([chain.offsets, np.zeros(len(axes))])
+    return Chain(np.stack(constants), turning, offsets), len(axes)
+
+
+def window_chain(chain: Chain, window: Window) -> Chain:
+    """The window's joints with the constants between them; what stands before and after is left out."""
+    a, b = window.first, window.last
+    constants = chain.constants[a : b + 1].copy()
+    if a > 0:
+        constants[0] = np.eye(4)
+    if b < chain.n:
+        constants[-1] = np.eye(4)
+    return Chain(constants, chain.revolute[a:b], chain.offsets[a:b])
+
+
+def _dimension(chain: Chain, size: float, first: int, last: int) -> int:
+    """Rank of the columns of some joints in the Jacobian, at a generic configuration."""
+    q = np.random.default_rng(11).uniform(-2.0, 2.0, (3, chain.n)) * np.where(chain.revolute, 1.0, size)
+    target = np.broadcast_to(transform(np.eye(3), np.zeros(3)), (3, 4, 4))
+    _, J = error_and_jacobian(chain, np.array(target), q, size)
+    values = np.linalg.svd(J[:, :, first:last], compute_uv=False)
+    return int(np.max(np.sum(values > RANK * values[:, :1], axis=1))) if last > first else 0
+
+
+def _windows(chain: Chain, size: float) -> list[Window]:
+    """Windows of consecutive independent joints that can do all that the chain can; those at the base first."""
+    dimension = _dimension(chain, size, 0, chain.n)
+    starts = range(chain.n - dimension, -1, -1) if chain.n > dimension else range(1)
+    candidates = [Window(start, start + dimension, dimension) for start in sorted(starts)]
+    return [w for w in candidates if _dimension(chain, size, w.first, w.last) == dimension]
+
+
+def _closed_form(part: Chain) -> tuple[Padded, Loop, Any] | None:
+    """The first closed form among the ways to make six joints of a window."""
+    for six in padded_chains(part):
+        loop = loop_of(six.chain)
+        for form in CLOSED_FORMS:
+            solver = form.find(loop)
+            if solver is not None:
+                return six, loop, solver
+    return None
+
+
+def _by_elimination(whole: Chain, open_joints: int, size: float, window: Window) -> Analysis | None:
+    part = window_chain(whole, window)
+    for six in padded_chains(part, most=3):
+        loop = loop_of(six.chain)
+        splits = choose_splits(loop)
+        if splits:
+            held = whole.n - part.n
+            solver = General(loop, splits)
+            sentence = _sentence(solver.sentence, six, held)
+            return Analysis(whole, open_joints, size, window, six, loop, solver, solver.method, sentence, held == 0)
+    return None
+
+
+class General:
+    """The elimination with its chosen splits, in the shape of a closed form."""
+
+    method = "elimination"
+    sentence = "no three axes meet in a point or are parallel: Raghavan and Roth's elimination"
+
+    def __init__(self, loop: Loop, splits: list[int]) -> None:
+        self.splits = splits
+        self.first = Elimination(loop, splits[0])
+
+    def candidates(self, closing: Array) -> Any:
+        """Candidates by the best split."""
+        return self.first.candidates(closing)
+
+
+def _named(solver: Any, six: Padded, whole: Chain, part: Chain) -> tuple[str, str]:
+    """The method's name and reason in the arm's own joints, which the solver's may not be."""
+    own = part.n
+    if six.virtual and part.revolute.all() and len({*_directions(part)}) == 1:
+        return "planar", "all axes are parallel: a planar arm"
+    if six.virtual >= 3:
+        return "positioning arm", f"{own} joints that place a point: a closed form"
+    if six.virtual:
+        return "closed form", f"a closed form of {own} joints"
+    if whole.n > own:
+        return solver.method, f"closed form of six joints ({solver.method})"
+    return solver.method, solver.sentence
+
+
+def _directions(part: Chain) -> list[int]:
+    """A number for each axis's direction, the same for parallel ones, at a generic configuration."""
+    q = np.random.default_rng(3).uniform(-1.0, 1.0, (1, part.n))
+    z = joint_frames_of(part, q)[0, :-1, :3, 2]
+    parallel = np.linalg.norm(np.cross(z[:, None], z[None]), axis=2) < RANK
+    return [int(np.argmax(row)) for row in parallel]
+
+
+def _sentence(reason: str, six: Padded, held: int) -> str:
+    parts = [reason]
+    if six.virtual:
+        count = "one virtual joint" if six.virtual == 1 else f"{six.virtual} virtual joints"
+        parts.append(f"with {count} at the tool that must stand still")
+    if held:
+        parts.append(f"{held} joint{'s' if held > 1 else ''} held at chosen values")
+    return "; ".join(parts)
+
+
+def chain_pose_parts(chain: Chain, window: Window, held: Array) -> tuple[Array, Array]:
+    """What stands before and after the window (k, 4, 4) with the other joints at held values (k, n).
+
+    `held` has all n columns [rad | m]; those of the window are not used.
+    """
+    q = held.copy()
+    q[:, window.first : window.last] = 0.0
+    F = joint_frames_of(chain, q)
+    before = F[:, window.first] if window.first else np.broadcast_to(np.eye(4), (len(q), 4, 4))
+    if window.last == chain.n:
+        return before, np.broadcast_to(np.eye(4), (len(q), 4, 4))
+    # From the frame after the window's last joint (its constant is left to this part) to the tool.
+    tail = Chain(
+        np.concatenate([chain.constants[window.last : window.last + 1], chain.constants[window.last + 1 :]]),
+        chain.revolute[window.last :],
+        chain.offsets[window.last :],
+    )
+    after = joint_frames_of(tail, held[:, window.last :])[:, -1]
+    return before, after

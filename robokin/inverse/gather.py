@@ -1,0 +1,56 @@
+"""From the joint values of all branches to the list of candidates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.entries import Array, Entry
+from robokin.inverse.forms import Motion
+from robokin.inverse.loop import Candidates
+from robokin.inverse.trigonometry import Mask
+
+Index = NDArray[np.intp]
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+
+def in_front(values: NDArray[Scalar], branches: Array | Mask) -> NDArray[Scalar]:
+    """Values (2, …) with the first axis in front of all of branches' axes, also where the rest is common to some."""
+    missing = branches.ndim + 1 - values.ndim
+    return values.reshape(values.shape[0], *(1,) * max(missing, 0), *values.shape[1:])
+
+
+def chosen_positions(positions: Sequence[Motion], chosen: Mask) -> tuple[list[Motion], Index]:
+    """The joints' positions (s,) on the chosen branches, and the place (s,) of each one's target in the block."""
+    shape = np.broadcast_shapes(chosen.shape, *(np.shape(part) for position in positions for part in position))
+    chosen = np.broadcast_to(chosen, shape)
+    taken: list[Motion] = [tuple(np.broadcast_to(part, shape)[chosen] for part in position) for position in positions]
+    return taken, np.nonzero(chosen)[-1].astype(np.intp, copy=False)
+
+
+def gathered(index: Index, values: Mapping[int, Entry], real: Mask) -> Candidates:
+    """The candidates for the targets index: (m,); values: joint → (…, m), broadcasting; real: (…, m) likewise.
+
+    The values lie joint by joint in memory, (s, 6) being a view: what follows works on columns.
+    """
+    shape = np.broadcast_shapes(index.shape, real.shape, *(np.shape(value) for value in values.values()))
+    table = np.empty((6, *shape))
+    for joint, value in values.items():
+        table[joint] = value
+    table = table.reshape(6, math.prod(shape))
+    index = np.broadcast_to(index, shape).reshape(-1)
+    keep = np.broadcast_to(real, shape).reshape(-1)
+    if not keep.all():
+        kept = np.flatnonzero(keep)
+        table, index = table.take(kept, axis=1), index.take(kept)
+    return Candidates(index, table.T)
+
+
+def joined(first: Candidates, second: Candidates) -> Candidates:
+    """The candidates of both."""
+    values = np.concatenate([first.values.T, second.values.T], axis=1).T
+    return Candidates(np.concatenate([first.index, second.index]), values)

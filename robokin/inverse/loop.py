@@ -1,0 +1,69 @@
+"""A six-joint chain and its target as one closed loop.
+
+T = C0 J1 C1 J2 C2 … J6 C6 says the same as
+
+    J1 L1 J2 L2 J3 L3 J4 L4 J5 L5 J6 L6 = I,    L1 … L5 = C1 … C5,    L6 = C6 T⁻¹ C0,
+
+where each J turns about z or slides along z. A loop has no beginning: what is derived for joints at one
+place holds for joints at every other, cyclically, so that "wrist at the hand" and "wrist at the base" are
+one case. Only L6 depends on the target.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.kinematics.chain import Chain
+from robokin.spatial import invert
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """Six joints and the constant links between them; lengths are in units of `size`.
+
+    revolute: (6,) bool; links: (5, 4, 4) L1 … L5; first, last: (4, 4) C0 and C6; size: the arm's size [m],
+    so that all lengths inside are of order one.
+    """
+
+    revolute: NDArray[np.bool_]
+    links: Array
+    first: Array
+    last: Array
+    size: float
+
+    def closing(self, T: Array) -> Array:
+        """L6 (m, 4, 4) for targets T: (m, 4, 4) [m]."""
+        target = T.copy()
+        target[:, :3, 3] /= self.size
+        return self.last @ invert(target) @ self.first
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """What a solver finds for a block of targets, before it is verified.
+
+    index: (s,) the target in the block that each candidate is for; values: (s, 6) the arguments of
+    J1 … J6 [rad | size], joint offsets included.
+    """
+
+    index: NDArray[np.intp]
+    values: Array
+
+
+def loop_of(chain: Chain) -> Loop:
+    """The loop of a chain of six joints."""
+    size = chain_size(chain)
+    constants = chain.constants.copy()
+    constants[:, :3, 3] /= size
+    return Loop(chain.revolute, constants[1:6], constants[0], constants[6], size)
+
+
+def chain_size(chain: Chain) -> float:
+    """The size of an arm [m]: the lengths of its constant transforms from joint to joint added up, or 1."""
+    lengths = np.linalg.norm(chain.constants[1:, :3, 3], axis=1)
+    return float(np.sum(lengths)) or 1.0

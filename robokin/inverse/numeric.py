@@ -1,0 +1,100 @@
+"""Damped least squares, for many starts at once: what serves where no closed form does, and the nearest pose.
+
+Statement. Find joint values that bring the pose of a chain to a target, or as near as it comes, within limits.
+Derivation. With the error e = (p_target - p, rotation vector of R_target Rᵀ) and the Jacobian J, the step
+dq = (JᵀW J + λ I)⁻¹ JᵀW e lowers the weighted error; λ proportional to the error itself (T. Sugihara,
+"Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method", IEEE T-RO 27(5), 2011) makes it
+cautious far off and Newton's near the end, singular or not. A joint that is at a limit and would be pushed
+further is left out of the step.
+Degenerate case. It finds a local minimum: good starts and several of them are what makes it find the least.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.padding import joint_frames_of
+from robokin.kinematics.chain import Chain
+
+Array = NDArray[np.float64]
+
+STEP = 0.6
+"""Longest step of a joint [rad | size]."""
+
+DAMPING = 1e-2
+"""λ as a part of the squared error; Sugihara's range is 1e-3 to 1e-1."""
+
+FLOOR = 1e-13
+"""Least λ, so that the matrix has an inverse at a singular configuration."""
+
+
+def pose_error(T: Array, found: Array, size: float) -> Array:
+    """(s, 6): origin's distance [size] and rotation vector [rad] from found to T, (s, 4, 4), in the base's axes."""
+    D = T[:, :3, :3] @ np.swapaxes(found[:, :3, :3], 1, 2)
+    w = 0.5 * np.stack([D[:, 2, 1] - D[:, 1, 2], D[:, 0, 2] - D[:, 2, 0], D[:, 1, 0] - D[:, 0, 1]], axis=1)
+    sine = np.linalg.norm(w, axis=1)
+    cosine = 0.5 * (np.trace(D, axis1=1, axis2=2) - 1.0)
+    angle = np.arctan2(sine, cosine)
+    # Near a half turn the skew part vanishes; any axis is as good as another to leave it by.
+    stuck = (sine < 1e-9) & (cosine < 0.0)
+    scale = np.where(sine > 1e-12, angle / np.where(sine > 1e-12, sine, 1.0), 1.0)
+    w = np.where(stuck[:, None], [np.pi, 0.0, 0.0], w * scale[:, None])
+    return np.concatenate([(T[:, :3, 3] - found[:, :3, 3]) / size, w], axis=1)
+
+
+def error_and_jacobian(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
+    """The error (s, 6) and the Jacobian (s, 6, n) with lengths, also those of prismatic joints, in sizes."""
+    F = joint_frames_of(chain, q)
+    z, o, p = F[:, :-1, :3, 2], F[:, :-1, :3, 3], F[:, -1, None, :3, 3]
+    turns = chain.revolute[:, None]
+    linear = np.where(turns, np.cross(z, p - o) / size, z)
+    angular = np.where(turns, z, 0.0)
+    J = np.swapaxes(np.concatenate([linear, angular], axis=2), 1, 2)
+    return pose_error(T, F[:, -1], size), J
+
+
+def descend(
+    chain: Chain,
+    T: Array,
+    q: Array,
+    size: float,
+    *,
+    limits: Array | None = None,
+    weights: Array | None = None,
+    steps: int = 40,
+    unreachable: bool = False,
+) -> tuple[Array, Array]:
+    """Joint values (s, n) [rad | m] after some steps from q towards targets T: (s, 4, 4), and the error (s, 6).
+
+    limits: (n, 2) [rad | m]; weights: (6,) of the error's parts. `unreachable` says that an error will
+    remain: the step then also allows for the curvature that it gives the sum of squares, about the error
+    itself times the arm's (a stretched elbow has no slope at all, but curves away from the target).
+    """
+    scale = np.where(chain.revolute, 1.0, size)
+    x = q / scale
+    low, high = (np.full(chain.n, -np.inf), np.full(chain.n, np.inf)) if limits is None else (limits / scale[:, None]).T
+    x = np.clip(x, low, high)
+    W = np.ones(6) if weights is None else weights
+    best, least = x.copy(), np.full(len(x), np.inf)
+    error = np.zeros((len(x), 6))
+    identity = np.eye(chain.n)
+    for step in range(steps + 1):
+        e, J = error_and_jacobian(chain, T, x * scale, size)
+        weighted = e * W
+        squared = np.sum(weighted * weighted, axis=1)
+        better = squared < least
+        best[better], least[better], error[better] = x[better], squared[better], e[better]
+        if step == steps or np.all(least < 1e-26):
+            break
+        J = J * W[:, None]
+        gradient = np.einsum("sij,si->sj", J, weighted)
+        # A joint at its limit that the gradient pushes outwards takes no part.
+        held = ((x <= low) & (gradient < 0.0)) | ((x >= high) & (gradient > 0.0))
+        J = np.where(held[:, None, :], 0.0, J)
+        damping = np.minimum(np.sqrt(squared) if unreachable else DAMPING * squared, 1.0) + FLOOR
+        M = np.swapaxes(J, 1, 2) @ J + damping[:, None, None] * identity
+        dx = np.linalg.solve(M, np.where(held, 0.0, gradient)[:, :, None])[:, :, 0]
+        dx *= (STEP / np.maximum(np.max(np.abs(dx), axis=1), STEP))[:, None]
+        x = np.clip(x + dx, low, high)
+    return best * scale, error

@@ -1,0 +1,88 @@
+"""What `solve_ik` answers: frozen values, each solution with its own residual."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """One joint configuration.
+
+    q: (n,) [rad | m]; `branch` names it (shoulder, elbow, wrist) or is empty; the errors are those of its
+    pose against the target, measured by forward kinematics [m, rad]. `free` names the joints that may
+    trade motion with each other at this configuration without moving the hand (a self-motion), in
+    numbers from 1; it is empty at a regular configuration.
+    """
+
+    q: Array
+    branch: str
+    within_limits: bool
+    position_error: float
+    angle_error: float
+    free: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """The answer for one target.
+
+    `complete` is true only where the solver guarantees that every solution is listed; `reason` says why
+    there is none; `nearest` is then the closest configuration found. `counts` says how many candidates
+    were left after each filter.
+    """
+
+    solutions: tuple[Solution, ...]
+    complete: bool
+    method: str
+    reason: str | None = None
+    nearest: Solution | None = None
+    counts: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def reachable(self) -> bool:
+        """Whether there is a solution."""
+        return bool(self.solutions)
+
+
+@dataclass(frozen=True, eq=False)
+class BatchResult:
+    """The answers for m targets as arrays, padded with NaN; `result[i]` is the answer for target i.
+
+    q: (m, k, n) [rad | m]; count: (m,); position_error, angle_error: (m, k) [m, rad];
+    within_limits: (m, k), False where padded.
+    """
+
+    q: Array
+    count: NDArray[np.intp]
+    position_error: Array
+    angle_error: Array
+    within_limits: NDArray[np.bool_]
+    complete: bool
+    method: str
+    single: Callable[[int], Result]
+    """Makes the answer for one target: reasons are worked out only for those that are looked at."""
+    branches: Callable[[], list[str]]
+    """Names all solutions, target after target: as many as `count` has in all."""
+    reason: Callable[[int], str | None]
+    """Says why a target has no solution."""
+
+    def __len__(self) -> int:
+        """The number of targets."""
+        return len(self.count)
+
+    def __getitem__(self, i: int) -> Result:
+        """The answer for target i."""
+        if not -len(self) <= i < len(self):
+            raise IndexError(f"target {i} of {len(self)}")
+        return self.single(i % len(self))
+
+    def __iter__(self) -> Iterator[Result]:
+        """The answers in the order of the targets."""
+        return (self[i] for i in range(len(self)))
