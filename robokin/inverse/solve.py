@@ -30,6 +30,9 @@ TASKS = ("pose", "approach", "position")
 ROTATION = 1e-6
 """A target whose rotation is off by more is none; below, rounding is taken out of it."""
 
+REACHED = 1e-8
+"""A nearest configuration whose position is off by less, in the arm's size, lacks only the orientation."""
+
 MOST = 16
 """Solutions listed for an arm that has infinitely many."""
 
@@ -290,6 +293,6 @@ def _why_not(request: Request, block: _Block, i: int) -> tuple[str, Solution]:
         return OUTSIDE, nearest
     if not analysis.complete and analysis.solver is None:
         return "none found, which proves nothing: outside the solver's guarantee", nearest
-    if position <= 1e-6 * analysis.size:
+    if analysis.open < 3 and position <= REACHED * analysis.size:
         return "orientation not attainable by this arm at that position", nearest
     return "out of reach", nearest
