@@ -54,7 +54,8 @@ class PoseMaker:
                 T = poses_in(forward_kinematics(self.robot, si), self.units)
                 frames = poses_in(row_frames(self.robot, si), self.units) if self.frames else None
             for result in (T, frames):
-                if result is not None and not np.isfinite(result).all():
+                # Rotations are finite for finite angles; only positions can grow too large.
+                if result is not None and not np.isfinite(result[..., :3, 3]).all():
                     finite = np.isfinite(result).reshape(len(q), -1).all(axis=1)
                     number = self.count + int(finite.argmin()) + 1
                     raise InputError(f"configuration {number}: the pose is too far away for a number, expected less")

@@ -89,7 +89,7 @@ def nearest_configuration(
     # The small weight leaves the position off by its square: it is closed by itself, from where it is.
     position_only = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
     closed, error = descend(
-        chain, few, q, analysis.size, limits=wide, weights=position_only, steps=40, unreachable=True
+        chain, few, q, analysis.size, limits=wide, weights=position_only, steps=300, unreachable=True
     )
     position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
     rounded = np.round(position, 9)

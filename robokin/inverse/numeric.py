@@ -25,6 +25,9 @@ STEP = 0.6
 DAMPING = 1e-2
 """λ as a part of the squared error; Sugihara's range is 1e-3 to 1e-1."""
 
+STILL = 1e-11
+"""A step [rad | size] at which a search for what is merely nearest has come to rest."""
+
 FLOOR = 1e-13
 """Least λ, so that the matrix has an inverse at a singular configuration."""
 
@@ -97,4 +100,6 @@ def descend(
         dx = np.linalg.solve(M, np.where(held, 0.0, gradient)[:, :, None])[:, :, 0]
         dx *= (STEP / np.maximum(np.max(np.abs(dx), axis=1), STEP))[:, None]
         x = np.clip(x + dx, low, high)
+        if unreachable and np.max(np.abs(dx)) < STILL:
+            break
     return best * scale, error

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import json
+import math
+import re
 import subprocess
 import sys
 
@@ -262,7 +264,10 @@ def test_of_a_position_no_angle_is_off(call):
     assert answer.json["nearest"]["angle_error"] == 0
     text = call("ik", "puma560", "--xyz", "3000,0,0").text
     assert "no solution: out of reach" in text
-    assert "off by 2066" in text
+    # The arm stretched out: upper arm, forearm with its offset a3, across the shoulder's d2, and the hand's d6.
+    reach = math.hypot(431.8 + math.hypot(20.32, 433.07), 149.09) + 56.25
+    off = float(re.search(r"off by ([\d.]+) mm", text)[1])
+    assert off == pytest.approx(3000 - reach, abs=2e-3)  # a millionth of the arm's size
     assert " deg" not in text.splitlines()[-1]
 
 
