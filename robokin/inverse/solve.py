@@ -238,7 +238,7 @@ def _batch(request: Request, answers: list[_Block]) -> BatchResult:
     start = 0
     for block in answers:
         found = block.found
-        place = np.arange(len(found)) - np.searchsorted(found.index, found.index)
+        place = np.arange(len(found)) - np.repeat(np.cumsum(block.count) - block.count, block.count)
         row = found.index + start
         q[row, place], position[row, place], angle[row, place] = found.q, found.position, found.angle
         inside[row, place] = block.inside

@@ -187,16 +187,20 @@ def within_limits(
         return q, np.ones(len(q), dtype=bool)
     if near is not None:
         q = np.where(revolute, q + turn * np.round((near - q) / turn), q)
+    given = q
     low, high = limits[:, 0] - LIMIT_TOLERANCE, limits[:, 1] + LIMIT_TOLERANCE
-    inside = np.all((q >= low) & (q <= high), axis=1)
-    out = np.flatnonzero(~inside)
-    if len(out):
-        # The least and the greatest turn that are within the limits; the nearest to the wish lies between them.
-        part = q[out]
-        with np.errstate(invalid="ignore"):
-            least, most = np.ceil((low - part) / turn), np.floor((high - part) / turn)
-        turns = np.where(revolute & (least <= most), np.clip(0.0, least, most), 0.0)
-        q = q.copy()
-        q[out] = part + turn * turns
-        inside[out] = np.all((q[out] >= low) & (q[out] <= high), axis=1)
+    inside = np.ones(len(q), dtype=bool)
+    for i in np.flatnonzero(np.isfinite(limits).any(axis=1)):
+        column = q[:, i]
+        fits = (column >= low[i]) & (column <= high[i])
+        beyond = near is not None or low[i] < -np.pi or high[i] > np.pi
+        if revolute[i] and beyond and not fits.all():
+            # The least and the greatest turn that are within the limits; the nearest to the wish lies between them.
+            with np.errstate(invalid="ignore"):
+                least, most = np.ceil((low[i] - column) / turn), np.floor((high[i] - column) / turn)
+            turned = column + turn * np.where(least <= most, np.clip(0.0, least, most), 0.0)
+            fits = (turned >= low[i]) & (turned <= high[i])
+            q = q.copy() if q is given else q
+            q[:, i] = turned
+        inside &= fits
     return q, inside

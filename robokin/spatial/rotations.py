@@ -192,7 +192,9 @@ def rotation_error(R: ArrayLike) -> Array:
     R = np.asarray(R, dtype=np.float64)
     gram = np.swapaxes(R, -1, -2) @ R
     skew = np.max(np.abs(gram - np.eye(3)), axis=(-1, -2))
-    return np.asarray(np.where(np.linalg.det(R) > 0.0, skew, np.maximum(skew, 2.0)))
+    x, y, z = R[..., 0], R[..., 1], R[..., 2]
+    determinant = np.sum(np.cross(x, y) * z, axis=-1)
+    return np.asarray(np.where(determinant > 0.0, skew, np.maximum(skew, 2.0)))
 
 
 def nearest_rotation(M: ArrayLike) -> Array:
