@@ -85,11 +85,11 @@ def nearest_configuration(
     q, error = descend(chain, many[:STARTS], drawn[best], analysis.size, limits=wide, weights=weights, steps=50)
     best = np.argsort(np.sum((error * weights) ** 2, axis=1), kind="stable")[:FINALISTS]
     few = many[:FINALISTS]
-    q, _ = descend(chain, few, q[best], analysis.size, limits=wide, weights=weights, steps=80, unreachable=True)
+    q, _ = descend(chain, few, q[best], analysis.size, limits=wide, weights=weights, steps=60, unreachable=True)
     # The small weight leaves the position off by its square: it is closed by itself, from where it is.
     position_only = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
     closed, error = descend(
-        chain, few, q, analysis.size, limits=wide, weights=position_only, steps=300, unreachable=True
+        chain, few, q, analysis.size, limits=wide, weights=position_only, steps=200, unreachable=True
     )
     position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
     rounded = np.round(position, 9)

@@ -71,8 +71,10 @@ def descend(
     """Joint values (s, n) [rad | m] after some steps from q towards targets T: (s, 4, 4), and the error (s, 6).
 
     limits: (n, 2) [rad | m]; weights: (6,) of the error's parts. `unreachable` says that an error will
-    remain: the step then also allows for the curvature that it gives the sum of squares, about the error
-    itself times the arm's (a stretched elbow has no slope at all, but curves away from the target).
+    remain: the step then also allows for the curvature that it gives the sum of squares, at most about the
+    error itself (a stretched elbow has no slope at all, but curves away from the target). How much it
+    really is shows as the search goes on: less is allowed for after each step that helps, more after one
+    that does not, which is taken back.
     """
     scale = np.where(chain.revolute, 1.0, size)
     x = q / scale
@@ -82,24 +84,30 @@ def descend(
     best, least = x.copy(), np.full(len(x), np.inf)
     error = np.zeros((len(x), 6))
     identity = np.eye(chain.n)
+    caution = np.ones(len(x))
     for step in range(steps + 1):
         e, J = error_and_jacobian(chain, T, x * scale, size)
         weighted = e * W
         squared = np.sum(weighted * weighted, axis=1)
-        better = squared < least
+        better = squared <= least
         best[better], least[better], error[better] = x[better], squared[better], e[better]
         if step == steps or np.all(least < 1e-26):
             break
+        if unreachable:
+            caution = np.clip(np.where(better, 0.5 * caution, 8.0 * caution), 1e-6, 1e3)
         J = J * W[:, None]
         gradient = np.einsum("sij,si->sj", J, weighted)
         # A joint at its limit that the gradient pushes outwards takes no part.
         held = ((x <= low) & (gradient < 0.0)) | ((x >= high) & (gradient > 0.0))
         J = np.where(held[:, None, :], 0.0, J)
-        damping = np.minimum(np.sqrt(squared) if unreachable else DAMPING * squared, 1.0) + FLOOR
+        damping = (caution * np.sqrt(squared) if unreachable else np.minimum(DAMPING * squared, 1.0)) + FLOOR
         M = np.swapaxes(J, 1, 2) @ J + damping[:, None, None] * identity
         dx = np.linalg.solve(M, np.where(held, 0.0, gradient)[:, :, None])[:, :, 0]
         dx *= (STEP / np.maximum(np.max(np.abs(dx), axis=1), STEP))[:, None]
+        if unreachable:
+            # From where the last step was of no use the next one starts at the best place so far.
+            x, dx = np.where(better[:, None], x, best), np.where(better[:, None], dx, 0.0)
+            if np.max(np.abs(dx)) < STILL and better.all():
+                break
         x = np.clip(x + dx, low, high)
-        if unreachable and np.max(np.abs(dx)) < STILL:
-            break
     return best * scale, error

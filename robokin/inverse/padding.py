@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations, pairwise, permutations
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,9 +82,15 @@ def _sample(chain: Chain) -> Array:
     return np.where(chain.revolute, q, 0.5 * size * q)
 
 
+_plans: WeakKeyDictionary[Chain, Plan] = WeakKeyDictionary()
+
+
 def joint_frames_of(chain: Chain, q: Array) -> Array:
     """The frame that each joint starts from and the tool's: (m, n + 1, 4, 4), at q: (m, n) without offsets."""
-    plan = Plan([[Constant(C, mark=True)] for C in chain.constants], chain.revolute, chain.offsets)
+    plan = _plans.get(chain)
+    if plan is None:
+        segments = [[Constant(C, mark=True)] for C in chain.constants]
+        plan = _plans[chain] = Plan(segments, chain.revolute, chain.offsets)
     out = np.empty((len(q), chain.n + 1, 4, 4))
     plan.frames(q, out)
     return out
