@@ -72,7 +72,7 @@ def _meeting(z0: Array, o0: Array, z1: Array, o1: Array) -> Array:
 def _shoulder(F: Array, wrist: Array) -> NDArray[np.bool_]:
     """Whether the wrist is on the side that x of the first link points to."""
     x1, o1 = F[:, 1, :3, 0], F[:, 0, :3, 3]
-    return np.asarray(np.einsum("si,si->s", x1, wrist - o1) >= -1e-9)
+    return _along(wrist - o1, x1)
 
 
 def _elbow(F: Array, wrist: Array) -> NDArray[np.bool_]:
@@ -81,17 +81,28 @@ def _elbow(F: Array, wrist: Array) -> NDArray[np.bool_]:
     line = wrist - shoulder
     up = np.cross(normal, line)
     up = up * np.sign(np.einsum("si,si->s", up, z1))[:, None]
-    return np.asarray(np.einsum("si,si->s", up, elbow - shoulder) >= 0.0)
+    return _along(elbow - shoulder, up)
 
 
 def _planar_elbow(F: Array) -> NDArray[np.bool_]:
     base, elbow = F[:, 0, :3, 3], F[:, 1, :3, 3]
     wrist = F[:, 2, :3, 3]
     left = np.cross(F[:, 0, :3, 2], wrist - base)
-    return np.asarray(np.einsum("si,si->s", left, elbow - base) >= 0.0)
+    return _along(elbow - base, left)
 
 
 def _side(F: Array, joint: int) -> NDArray[np.bool_]:
     """Whether a joint has turned its neighbours' axes to the positive side, sin θ ≥ 0."""
     before, axis, after = F[:, joint - 1, :3, 2], F[:, joint, :3, 2], F[:, joint + 1, :3, 2]
-    return np.asarray(np.einsum("si,si->s", np.cross(before, after), axis) >= 0.0)
+    return _along(np.cross(before, after), axis, 1.0)
+
+
+UNDECIDED = 1e-6
+"""A sine this small is no side: a straight elbow is up, a straight wrist no-flip, whatever its last digits say."""
+
+
+def _along(v: Array, direction: Array, length: float | None = None) -> NDArray[np.bool_]:
+    """Whether vectors v (s, 3) point along directions (s, 3) rather than against them; neither counts as along."""
+    longest = np.linalg.norm(v, axis=1) if length is None else length
+    scale = longest * np.linalg.norm(direction, axis=1)
+    return np.asarray(np.einsum("si,si->s", v, direction) >= -UNDECIDED * scale)
