@@ -9,7 +9,7 @@ import sys
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
-from benchmarks import forward, inverse, machine, pipes, start  # noqa: E402
+from benchmarks import forward, inverse, machine, pipes, start  # noqa: E402 - after the environment is set
 
 BENCHMARKS = {"forward": forward.run, "pipes": pipes.run, "inverse": inverse.run, "start": start.run}
 

@@ -41,7 +41,7 @@ def load_any(name_or_path: str | Path, overrides: Mapping[str, str] | None = Non
         return read_file(Path(name_or_path), overrides)
     path = library_folder() / f"{name}.yaml"
     # os.path.isfile takes what no file can be called (too long, a null character) for a no.
-    if not name or not os.path.isfile(path):  # noqa: PTH113
+    if not name or not os.path.isfile(path):  # noqa: PTH113 - it raises for none of them
         raise unknown_name(name)
     return read_file(path, overrides, id=name)
 
@@ -50,5 +50,5 @@ def unknown_name(name: str) -> InputError:
     """The error for a name that is not in the library."""
     close = nearest(name, library_names())
     expected = f"did you mean {or_list(close)}?" if close else "`robokin list` shows what there is"
-    in_folder = f" (a file here? write ./{name})" if name and os.path.isfile(name) else ""  # noqa: PTH113
+    in_folder = f" (a file here? write ./{name})" if name and os.path.isfile(name) else ""  # noqa: PTH113 - as above
     return InputError(f"there is no robot or mechanism named '{shown(name)}' in the library{in_folder}; {expected}")

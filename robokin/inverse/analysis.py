@@ -96,7 +96,6 @@ def analyse(chain: Chain, task: Task = "pose") -> Analysis:
     size = chain_size(chain)
     whole, open_joints = with_open_joints(chain, task)
     windows = _windows(whole, size)
-    best: Analysis | None = None
     for window in windows:
         part = window_chain(whole, window)
         found = _closed_form(part)
@@ -107,9 +106,9 @@ def analyse(chain: Chain, task: Task = "pose") -> Analysis:
             sentence = _sentence(reason, six, held)
             return Analysis(whole, open_joints, size, window, six, loop, solver, method, sentence, held == 0)
     for window in windows:
-        best = _by_elimination(whole, open_joints, size, window)
-        if best is not None:
-            return best
+        general = _by_elimination(whole, open_joints, size, window)
+        if general is not None:
+            return general
     window = Window(0, whole.n, _dimension(whole, size, 0, whole.n))
     sentence = "no six of its joints can do all that the arm can: damped least squares from many starts"
     return Analysis(whole, open_joints, size, window, None, None, None, "numeric", sentence, complete=False)

@@ -174,7 +174,7 @@ def test_elbow_singularities(name, rng):
 def test_joint_values_that_are_multiples_of_90_degrees(name, rng):
     answered, hit = generated(robokin.load(name), rng.integers(-1, 3, (60, 6)) * RIGHT)
     assert answered == 1.0
-    assert hit >= 0.95
+    assert hit >= 0.99
 
 
 def test_a_self_motion_is_named():
@@ -282,7 +282,9 @@ def test_position_alone_and_approach(rng):
     assert names == {f"shoulder {a}, elbow {b}" for a in ("right", "left") for b in ("up", "down")}
     puma = robokin.load("puma560")
     T = robokin.forward_kinematics(puma, rng.uniform(-1, 1, 6))
-    for solution in robokin.solve_ik(puma, T, limits=False, task="approach").solutions:
+    approached = robokin.solve_ik(puma, T, limits=False, task="approach").solutions
+    assert len(approached) >= 4
+    for solution in approached:
         found = robokin.forward_kinematics(puma, solution.q)
         assert np.allclose(found[:3, 2:], T[:3, 2:], atol=1e-8)
 
