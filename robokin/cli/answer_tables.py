@@ -5,12 +5,14 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import Any, cast
 
 import numpy as np
 
 from robokin.cli.output.numbers import counted, show
 from robokin.cli.output.tables import WIDTH, heading, narrow_table, render
+from robokin.inverse.analysis import Analysis, Task, analysis_of
 from robokin.inverse.result import Result, Solution
 from robokin.model import Robot
 from robokin.units import Units
@@ -51,6 +53,8 @@ class AnswerTable:
         if not result.reachable:
             return f"no solution: {result.reason} ({result.method})"
         whole = "all there are" if result.complete else "there may be more"
+        if result.families and not result.complete:
+            whole = f"all there are but for the value of {_joints(self.idle)}"
         return f"{counted(len(result.solutions), 'solution')}, {whole} ({result.method})"
 
     def notes(self, result: Result, shown: Sequence[Solution]) -> Iterator[str]:
@@ -70,9 +74,30 @@ class AnswerTable:
             )
         if any(not solution.within_limits for solution in shown):
             yield "! outside the joint limits"
-        for free in sorted({solution.free for solution in shown if solution.free}):
-            names = ", ".join(f"q{i}" for i in free)
-            yield f"singular: {names} may move together there and the hand stand still; one such posture is listed"
+        yield from self.motions([solution.free for solution in shown])
+
+    @property
+    def idle(self) -> list[int]:
+        """The joints, from 1, that only move what the task leaves open."""
+        return [i + 1 for i in self.analysis.idle]
+
+    @cached_property
+    def analysis(self) -> Analysis:
+        """How the robot is solved for the task."""
+        return analysis_of(self.robot, cast("Task", self.task))
+
+    def motions(self, free: Sequence[tuple[int, ...]]) -> Iterator[str]:
+        """What is to be said of joints that are free to move, given those of each solution."""
+        together = [tuple(i for i in joints if i not in self.idle) for joints in free]
+        if any(len(joints) > len(rest) for joints, rest in zip(free, together, strict=True)):
+            yield f"free: {_joints(self.idle)} may have any value; each posture is listed once"
+        if self.analysis.redundancy and any(together):
+            union = sorted({i for joints in together for i in joints})
+            yield f"{_joints(union)} may move together and the hand do what is asked; well spread postures are listed"
+            return
+        for joints in sorted({joints for joints in together if joints}):
+            moving = f"{_joints(joints)} may move" + (" together" if len(joints) > 1 else "")
+            yield f"singular: {moving} there and the hand stand still; one such posture is listed"
 
     def drawn(self, shown: Sequence[Solution], joints: Sequence[Sequence[float]], solved: bool) -> Iterator[Any]:
         """The solutions, a row each; side by side in several tables where a page is too narrow for one."""
@@ -98,6 +123,18 @@ class AnswerTable:
             for label, *cells in zip(labels, *(cells for _, _, cells in group), strict=True):
                 table.add_row(label, *cells)
             yield table
+
+
+def _joints(numbers: Sequence[int]) -> str:
+    """`q4, q6`, and more than two in a row as `q1 to q7`."""
+    runs: list[list[int]] = []
+    for i in numbers:
+        if runs and i == runs[-1][-1] + 1:
+            runs[-1].append(i)
+        else:
+            runs.append([i])
+    names = [f"q{run[0]} to q{run[-1]}" if len(run) > 2 else ", ".join(f"q{i}" for i in run) for run in runs]
+    return ", ".join(names)
 
 
 def _pages(columns: Sequence[tuple[str, Any, list[str]]], room: int) -> Iterator[list[tuple[str, Any, list[str]]]]:

@@ -88,7 +88,7 @@ class Answers:
             ]
         if not solutions:
             return result
-        return replace(result, solutions=tuple(solutions), nearest=None, reason=None, complete=False)
+        return replace(result, solutions=tuple(solutions), nearest=None, reason=None, complete=False, families=False)
 
     # Plain data -------------------------------------------------------------------------------------------
 

@@ -4,6 +4,8 @@ Every arm is brought to a loop of six joints:
 
 - What the task leaves open (the roll about the approach direction, the whole orientation) becomes joints at
   the tool that may take any value.
+- A joint that only moves what the task leaves open (the roll of a hand of which the direction alone is asked
+  for) is idle: the others are solved for without it, whatever its value.
 - An arm with more joints than directions it can move in keeps a window of consecutive joints that can do all
   that the arm can; the joints before and after it are held at chosen values, which only moves the target.
 - An arm or window with fewer than six joints gets virtual joints that must come out as zero.
@@ -29,9 +31,9 @@ from robokin.inverse.padding import Padded, joint_frames_of, padded_chains
 from robokin.inverse.parallel import ThreeParallel
 from robokin.inverse.spherical import SphericalTriple
 from robokin.inverse.three_prismatic import ThreePrismatic
-from robokin.kinematics.chain import Chain, chain_of, z_to
+from robokin.kinematics.chain import Chain, chain_of, exact, z_to
 from robokin.model import Robot
-from robokin.spatial import transform
+from robokin.spatial import rotation_from_axis_angle, transform
 
 Array = NDArray[np.float64]
 Task = Literal["pose", "approach", "position"]
@@ -58,14 +60,18 @@ class Window:
 class Analysis:
     """How an arm's inverse kinematics is solved for a task.
 
-    chain: the arm's joints and after them the `open` joints that the task leaves free; window: what is
-    solved for; six: the window padded to six joints; loop: the same as a loop; solver: what solves it;
-    method, sentence: its name and why it applies; complete: whether it finds every solution.
+    chain: the arm's joints and after them the `open` joints that the task leaves free; idle: those of the
+    arm's joints, from 0, that only move what the task leaves open; solved: the chain without them; window:
+    what is solved for of that; six: the window padded to six joints; loop: the same as a loop; solver: what
+    solves it; method, sentence: its name and why it applies; complete: whether it finds every solution but
+    for the values of idle joints.
     """
 
     chain: Chain
     open: int
     size: float
+    idle: tuple[int, ...]
+    solved: Chain
     window: Window
     six: Padded | None
     loop: Loop | None
@@ -76,8 +82,13 @@ class Analysis:
 
     @property
     def redundancy(self) -> int:
-        """How many joints are held: the dimension of the self-motion."""
-        return self.chain.n - (self.window.last - self.window.first)
+        """How many joints are held besides the idle ones: the dimension of the self-motion without them."""
+        return self.solved.n - (self.window.last - self.window.first)
+
+    @property
+    def moving(self) -> NDArray[np.intp]:
+        """The arm's joints, from 0, that are not idle."""
+        return np.array([i for i in range(self.chain.n - self.open) if i not in self.idle], dtype=np.intp)
 
 
 _kept: WeakKeyDictionary[Robot, dict[str, Analysis]] = WeakKeyDictionary()
@@ -95,28 +106,40 @@ def analyse(chain: Chain, task: Task = "pose") -> Analysis:
     """Decide how the inverse kinematics of a chain is solved."""
     size = chain_size(chain)
     whole, open_joints = with_open_joints(chain, task)
-    windows = _windows(whole, size)
+    idle = idle_joints(whole, open_joints, size)
+    if idle:
+        whole, open_joints = with_open_joints(chain, task, roll_first=True)
+    solved = without(whole, idle)
+    told = whole, open_joints, size, idle, solved
+    windows = _windows(solved, size)
     for window in windows:
-        part = window_chain(whole, window)
+        part = window_chain(solved, window)
         found = _closed_form(part)
         if found is not None:
             six, loop, solver = found
-            method, reason = _named(solver, six, whole, part)
-            held = whole.n - part.n
+            method, reason = _named(solver, six, solved, part)
+            held = solved.n - part.n
             sentence = _sentence(reason, six, held)
-            return Analysis(whole, open_joints, size, window, six, loop, solver, method, sentence, held == 0)
+            return Analysis(*told, window, six, loop, solver, method, sentence, held == 0)
     for window in windows:
-        general = _by_elimination(whole, open_joints, size, window)
+        part = window_chain(solved, window)
+        general = _by_elimination(part)
         if general is not None:
-            return general
-    window = Window(0, whole.n, _dimension(whole, size, 0, whole.n))
+            six, loop, solver = general
+            held = solved.n - part.n
+            sentence = _sentence(solver.sentence, six, held)
+            return Analysis(*told, window, six, loop, solver, solver.method, sentence, held == 0)
+    window = Window(0, solved.n, _dimension(solved, size, 0, solved.n))
     sentence = "no six of its joints can do all that the arm can: damped least squares from many starts"
-    return Analysis(whole, open_joints, size, window, None, None, None, "numeric", sentence, complete=False)
+    return Analysis(*told, window, None, None, None, "numeric", sentence, complete=False)
 
 
-def with_open_joints(chain: Chain, task: Task) -> tuple[Chain, int]:
-    """The chain with joints at the tool for what the task leaves open: none, the roll, or all three turns."""
-    axes = {"pose": (), "approach": (2,), "position": (0, 1, 2)}[task]
+def with_open_joints(chain: Chain, task: Task, roll_first: bool = False) -> tuple[Chain, int]:
+    """The chain with joints at the tool for what the task leaves open: none, the roll, or all three turns.
+
+    With the roll first it may stand for an idle last joint, which turns about the same axis in many arms.
+    """
+    axes = {"pose": (), "approach": (2,), "position": (2, 1, 0) if roll_first else (0, 1, 2)}[task]
     if not axes:
         return chain, 0
     frames = [z_to(tuple(float(part) for part in np.eye(3)[axis])) for axis in axes]
@@ -127,6 +150,38 @@ def with_open_joints(chain: Chain, task: Task) -> tuple[Chain, int]:
     turning = np.concatenate([chain.revolute, np.ones(len(axes), dtype=bool)])
     offsets = np.concatenate([chain.offsets, np.zeros(len(axes))])
     return Chain(np.stack(constants), turning, offsets), len(axes)
+
+
+def idle_joints(chain: Chain, open_joints: int, size: float) -> tuple[int, ...]:
+    """The arm's joints, from 0, each of which only moves what the task leaves open, whatever the others do.
+
+    What is asked of the tool does not depend on such a joint: its column in the Jacobian is everywhere a
+    combination of the open joints' columns.
+    """
+    own = chain.n - open_joints
+    if not open_joints:
+        return ()
+    J = _generic_jacobians(chain, size)
+    basis = np.linalg.qr(J[:, :, own:])[0]
+    rest = J[:, :, :own] - basis @ (np.swapaxes(basis, 1, 2) @ J[:, :, :own])
+    return tuple(int(i) for i in np.flatnonzero(np.max(np.linalg.norm(rest, axis=1), axis=0) < RANK))
+
+
+def without(chain: Chain, idle: tuple[int, ...]) -> Chain:
+    """The chain with some joints fixed at zero."""
+    if not idle:
+        return chain
+    constants = [chain.constants[0]]
+    for i in range(chain.n):
+        if i in idle:
+            offset = float(chain.offsets[i])
+            turned = rotation_from_axis_angle([0.0, 0.0, 1.0], offset if chain.revolute[i] else 0.0)
+            standing = transform(turned, np.array([0.0, 0.0, 0.0 if chain.revolute[i] else offset]))
+            constants[-1] = exact(constants[-1] @ standing @ chain.constants[i + 1])
+        else:
+            constants.append(chain.constants[i + 1])
+    rest = [i for i in range(chain.n) if i not in idle]
+    return Chain(np.stack(constants), chain.revolute[rest], chain.offsets[rest])
 
 
 def window_chain(chain: Chain, window: Window) -> Chain:
@@ -142,11 +197,15 @@ def window_chain(chain: Chain, window: Window) -> Chain:
 
 def _dimension(chain: Chain, size: float, first: int, last: int) -> int:
     """Rank of the columns of some joints in the Jacobian, at a generic configuration."""
+    values = np.linalg.svd(_generic_jacobians(chain, size)[:, :, first:last], compute_uv=False)
+    return int(np.max(np.sum(values > RANK * values[:, :1], axis=1))) if last > first else 0
+
+
+def _generic_jacobians(chain: Chain, size: float) -> Array:
+    """Jacobians (3, 6, n), lengths in sizes, at arbitrary configurations."""
     q = np.random.default_rng(11).uniform(-2.0, 2.0, (3, chain.n)) * np.where(chain.revolute, 1.0, size)
     target = np.broadcast_to(transform(np.eye(3), np.zeros(3)), (3, 4, 4))
-    _, J = error_and_jacobian(chain, np.array(target), q, size)
-    values = np.linalg.svd(J[:, :, first:last], compute_uv=False)
-    return int(np.max(np.sum(values > RANK * values[:, :1], axis=1))) if last > first else 0
+    return error_and_jacobian(chain, np.array(target), q, size)[1]
 
 
 def _windows(chain: Chain, size: float) -> list[Window]:
@@ -168,16 +227,13 @@ def _closed_form(part: Chain) -> tuple[Padded, Loop, Any] | None:
     return None
 
 
-def _by_elimination(whole: Chain, open_joints: int, size: float, window: Window) -> Analysis | None:
-    part = window_chain(whole, window)
+def _by_elimination(part: Chain) -> tuple[Padded, Loop, General] | None:
+    """The elimination for the first way to make six joints of a window that it serves."""
     for six in padded_chains(part, most=3):
         loop = loop_of(six.chain)
         splits = choose_splits(loop)
         if splits:
-            held = whole.n - part.n
-            solver = General(loop, splits)
-            sentence = _sentence(solver.sentence, six, held)
-            return Analysis(whole, open_joints, size, window, six, loop, solver, solver.method, sentence, held == 0)
+            return six, loop, General(loop, splits)
     return None
 
 

@@ -1,4 +1,4 @@
-"""Numeric answers: solutions where no solver applies, the nearest configuration where there is none, self-motions."""
+"""Numeric answers: solutions where no solver applies, and self-motions."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from robokin.inverse.analysis import Analysis
 from robokin.inverse.numeric import descend, error_and_jacobian
+from robokin.inverse.padding import joint_frames_of
 from robokin.inverse.verify import CLOSES, Found, nothing
 from robokin.kinematics.chain import Chain
 
@@ -15,14 +16,8 @@ Array = NDArray[np.float64]
 STARTS = 64
 """Starts of a search for one target; PUMA's and Panda's poses are met from 8 of them in 99.95 % of the cases."""
 
-FINALISTS = 8
-"""Of these the search goes on with the best, more carefully."""
-
 DRAWN = 2048
 """Configurations drawn to choose the starts from."""
-
-ORIENTATION = 1e-3
-"""Weight of a radian against an arm's size where the position comes first."""
 
 SINGULAR = 1e-6
 """Least singular value of the Jacobian (lengths in sizes) below which a configuration is singular."""
@@ -43,10 +38,17 @@ def starts(chain: Chain, limits: Array, size: float, count: int, seed: int) -> A
     return low + (high - low) * np.random.default_rng(seed).random((count, chain.n))
 
 
-def numeric_solutions(analysis: Analysis, T: Array, limits: Array, seed: int, count: int = STARTS) -> Found:
-    """Solutions found by descending from random starts for targets T: (m, 4, 4), with all their duplicates."""
+def numeric_solutions(
+    analysis: Analysis, T: Array, limits: Array, rest: Array, seed: int, count: int = STARTS
+) -> Found:
+    """Solutions found by descending from random starts for targets T: (m, 4, 4), with all their duplicates.
+
+    limits: (n, 2); idle joints are held at `rest` (n,).
+    """
     chain, own = analysis.chain, analysis.chain.n - analysis.open
     wide = np.concatenate([limits, np.tile([-np.inf, np.inf], (analysis.open, 1))])
+    idle = list(analysis.idle)
+    wide[idle] = rest[idle, None]
     drawn = starts(chain, wide, analysis.size, DRAWN, seed)
     parts = nothing(own)
     for i, target in enumerate(T):
@@ -66,60 +68,73 @@ def numeric_solutions(analysis: Analysis, T: Array, limits: Array, seed: int, co
     return parts
 
 
-def nearest_configuration(
-    analysis: Analysis, target: Array, limits: Array, near: Array | None, seed: int
-) -> tuple[Array, float, float]:
-    """The configuration (n,) whose pose comes nearest to target (4, 4): position first, then orientation.
+def free_at(analysis: Analysis, q: Array) -> list[tuple[int, ...]]:
+    """For each configuration (s, n) the joints, from 1, that may trade motion there and fulfil the task.
 
-    Also its distance [m] and angle [rad] from the target.
+    At a regular configuration they are those that the Jacobian's null space moves, if the arm is redundant
+    for the task; at a singular one it takes a walk to know.
     """
-    chain, own = analysis.chain, analysis.chain.n - analysis.open
-    wide = np.concatenate([limits, np.tile([-np.inf, np.inf], (analysis.open, 1))])
-    drawn = starts(chain, wide, analysis.size, DRAWN, seed)
-    if near is not None:
-        drawn[0, :own] = near
-    many = np.broadcast_to(target, (DRAWN, 4, 4))
-    weights = np.array([1.0, 1.0, 1.0, ORIENTATION, ORIENTATION, ORIENTATION])
-    error, _ = error_and_jacobian(chain, many, drawn, analysis.size)
-    best = np.argsort(np.sum((error * [1, 1, 1, 0.1, 0.1, 0.1]) ** 2, axis=1), kind="stable")[:STARTS]
-    q, error = descend(chain, many[:STARTS], drawn[best], analysis.size, limits=wide, weights=weights, steps=50)
-    best = np.argsort(np.sum((error * weights) ** 2, axis=1), kind="stable")[:FINALISTS]
-    few = many[:FINALISTS]
-    q, _ = descend(chain, few, q[best], analysis.size, limits=wide, weights=weights, steps=60, unreachable=True)
-    # The small weight leaves the position off by its square: it is closed by itself, from where it is.
-    position_only = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
-    closed, error = descend(
-        chain, few, q, analysis.size, limits=wide, weights=position_only, steps=200, unreachable=True
-    )
-    position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
-    rounded = np.round(position, 9)
-    winner = np.lexsort((angle, rounded))[0]
-    return closed[winner, :own], float(position[winner] * analysis.size), float(angle[winner])
+    chain, own, dimension = analysis.chain, q.shape[1], analysis.window.dimension
+    # Where the pose is met does not matter: what the task leaves open turns from there.
+    q = np.concatenate([q, np.zeros((len(q), analysis.open))], axis=1)
+    T = joint_frames_of(chain, q)[:, -1]
+    _, J = error_and_jacobian(chain, T, q, analysis.size)
+    if chain.n == dimension:
+        values = np.linalg.svd(J, compute_uv=False)
+        moved = np.zeros((len(q), own), dtype=bool)
+    else:
+        _, values, Vt = np.linalg.svd(J)
+        moved = np.linalg.norm(Vt[:, dimension:, :own], axis=1) > SINGULAR
+    free = [tuple((np.flatnonzero(row) + 1).tolist()) for row in moved]
+    singular = np.flatnonzero(values[:, dimension - 1] <= SINGULAR)
+    if len(singular):
+        trading = free_joints(chain, q[singular], T[singular], analysis.size)[:, :own]
+        trading[:, list(analysis.idle)] = True
+        for i, row in zip(singular.tolist(), trading, strict=True):
+            free[i] = tuple((np.flatnonzero(row) + 1).tolist())
+    return free
 
 
-def free_joints(chain: Chain, q: Array, target: Array, size: float) -> tuple[int, ...]:
-    """Joints (from 1) that may trade motion at q (n,) without moving the tool from target (4, 4); () if none.
+def few_joints(null: Array) -> Array:
+    """Directions (k, n) that span the same as (k, n), each with as few joints as they can: Gauss and Jordan's form.
+
+    A wrist and an elbow, both singular, are then walked apart: together they disturb each other.
+    """
+    out = null.copy()
+    for i in range(len(out)):
+        column = int(np.argmax(np.abs(out[i:]))) % out.shape[1]
+        row = i + int(np.argmax(np.abs(out[i:, column])))
+        out[[i, row]] = out[[row, i]]
+        out[i] /= out[i, column]
+        others = np.arange(len(out)) != i
+        out[others] -= out[others, column][:, None] * out[i]
+    return out / np.max(np.abs(out), axis=1, keepdims=True) if len(out) else out
+
+
+def free_joints(chain: Chain, q: Array, T: Array, size: float) -> NDArray[np.bool_]:
+    """(s, n) whether a joint may trade motion at q (s, n) with others without moving the tool from T (s, 4, 4).
 
     A null vector of the Jacobian alone is no proof: a stretched elbow has one and cannot move. So the
     joints are moved along it and brought back to the target; if they stay away from where they were, they
     are on a curve of solutions.
     """
-    _, J = error_and_jacobian(chain, target[None], q[None], size)
-    _, values, Vt = np.linalg.svd(J[0])
-    null = Vt[np.sum(values > SINGULAR) :]
-    if not len(null):
-        return ()
+    _, J = error_and_jacobian(chain, T, q, size)
+    _, values, Vt = np.linalg.svd(J)
+    rank = np.sum(values > SINGULAR, axis=1)
+    ways = [few_joints(V[r:]) for V, r in zip(Vt, rank, strict=True)]
+    which = np.tile(np.repeat(np.arange(len(q)), chain.n - rank), 2)
+    ahead = np.concatenate([*ways, *(-way for way in ways)])
     scale = np.where(chain.revolute, 1.0, size)
-    moving = np.zeros(chain.n, dtype=bool)
-    for direction in null:
-        for ahead in (direction, -direction):
-            at = q
-            for _ in range(TRADES):
-                back, error = descend(chain, target[None], (at + TRADE * ahead * scale)[None], size, steps=20)
-                gone = (back[0] - at) / scale
-                if np.max(np.abs(error)) > 1e-8 or np.max(np.abs(gone)) < 0.3 * TRADE:
-                    break
-                # On along the curve: a joint that happens to stand still where it starts moves further on.
-                at, ahead = back[0], gone / np.max(np.abs(gone))
-                moving |= np.abs(at - q) / scale > 1e-4
-    return tuple(int(i) + 1 for i in np.flatnonzero(moving))
+    moving = np.zeros(q.shape, dtype=bool)
+    at = q[which]
+    for _ in range(TRADES):
+        if not len(which):
+            break
+        back, error = descend(chain, T[which], at + TRADE * ahead * scale, size, steps=20)
+        gone = (back - at) / scale
+        far = np.max(np.abs(gone), axis=1)
+        on = (np.max(np.abs(error), axis=1) <= CLOSES) & (far >= 0.3 * TRADE)
+        # On along the curve: a joint that happens to stand still where it starts moves further on.
+        which, at, ahead = which[on], back[on], gone[on] / far[on, None]
+        np.logical_or.at(moving, which, np.abs(at - q[which]) / scale > 1e-4)
+    return moving

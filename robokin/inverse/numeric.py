@@ -1,8 +1,8 @@
-"""Damped least squares, for many starts at once: what serves where no closed form does, and the nearest pose.
+"""Damped least squares, for many starts at once: what serves where no closed form does.
 
-Statement. Find joint values that bring the pose of a chain to a target, or as near as it comes, within limits.
+Statement. Find joint values that bring the pose of a chain to a target, within limits.
 Derivation. With the error e = (p_target - p, rotation vector of R_target Rᵀ) and the Jacobian J, the step
-dq = (JᵀW J + λ I)⁻¹ JᵀW e lowers the weighted error; λ proportional to the error itself (T. Sugihara,
+dq = (JᵀJ + λ I)⁻¹ Jᵀe lowers the error; λ proportional to the error itself (T. Sugihara,
 "Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method", IEEE T-RO 27(5), 2011) makes it
 cautious far off and Newton's near the end, singular or not. A joint that is at a limit and would be pushed
 further is left out of the step.
@@ -24,9 +24,6 @@ STEP = 0.6
 
 DAMPING = 1e-2
 """λ as a part of the squared error; Sugihara's range is 1e-3 to 1e-1."""
-
-STILL = 1e-11
-"""A step [rad | size] at which a search for what is merely nearest has come to rest."""
 
 FLOOR = 1e-13
 """Least λ, so that the matrix has an inverse at a singular configuration."""
@@ -58,56 +55,33 @@ def error_and_jacobian(chain: Chain, T: Array, q: Array, size: float) -> tuple[A
 
 
 def descend(
-    chain: Chain,
-    T: Array,
-    q: Array,
-    size: float,
-    *,
-    limits: Array | None = None,
-    weights: Array | None = None,
-    steps: int = 40,
-    unreachable: bool = False,
+    chain: Chain, T: Array, q: Array, size: float, *, limits: Array | None = None, steps: int = 40
 ) -> tuple[Array, Array]:
     """Joint values (s, n) [rad | m] after some steps from q towards targets T: (s, 4, 4), and the error (s, 6).
 
-    limits: (n, 2) [rad | m]; weights: (6,) of the error's parts. `unreachable` says that an error will
-    remain: the step then also allows for the curvature that it gives the sum of squares, at most about the
-    error itself (a stretched elbow has no slope at all, but curves away from the target). How much it
-    really is shows as the search goes on: less is allowed for after each step that helps, more after one
-    that does not, which is taken back.
+    limits: (n, 2) [rad | m]. Where an error remains, what comes closest is another module's business (`closest`).
     """
     scale = np.where(chain.revolute, 1.0, size)
     x = q / scale
     low, high = (np.full(chain.n, -np.inf), np.full(chain.n, np.inf)) if limits is None else (limits / scale[:, None]).T
     x = np.clip(x, low, high)
-    W = np.ones(6) if weights is None else weights
     best, least = x.copy(), np.full(len(x), np.inf)
     error = np.zeros((len(x), 6))
     identity = np.eye(chain.n)
-    caution = np.ones(len(x))
     for step in range(steps + 1):
         e, J = error_and_jacobian(chain, T, x * scale, size)
-        weighted = e * W
-        squared = np.sum(weighted * weighted, axis=1)
+        squared = np.sum(e * e, axis=1)
         better = squared <= least
         best[better], least[better], error[better] = x[better], squared[better], e[better]
         if step == steps or np.all(least < 1e-26):
             break
-        if unreachable:
-            caution = np.clip(np.where(better, 0.5 * caution, 8.0 * caution), 1e-6, 1e3)
-        J = J * W[:, None]
-        gradient = np.einsum("sij,si->sj", J, weighted)
+        gradient = np.einsum("sij,si->sj", J, e)
         # A joint at its limit that the gradient pushes outwards takes no part.
         held = ((x <= low) & (gradient < 0.0)) | ((x >= high) & (gradient > 0.0))
         J = np.where(held[:, None, :], 0.0, J)
-        damping = (caution * np.sqrt(squared) if unreachable else np.minimum(DAMPING * squared, 1.0)) + FLOOR
+        damping = np.minimum(DAMPING * squared, 1.0) + FLOOR
         M = np.swapaxes(J, 1, 2) @ J + damping[:, None, None] * identity
         dx = np.linalg.solve(M, np.where(held, 0.0, gradient)[:, :, None])[:, :, 0]
         dx *= (STEP / np.maximum(np.max(np.abs(dx), axis=1), STEP))[:, None]
-        if unreachable:
-            # From where the last step was of no use the next one starts at the best place so far.
-            x, dx = np.where(better[:, None], x, best), np.where(better[:, None], dx, 0.0)
-            if np.max(np.abs(dx)) < STILL and better.all():
-                break
         x = np.clip(x + dx, low, high)
     return best * scale, error

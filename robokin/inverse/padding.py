@@ -85,14 +85,19 @@ def _sample(chain: Chain) -> Array:
 _plans: WeakKeyDictionary[Chain, Plan] = WeakKeyDictionary()
 
 
-def joint_frames_of(chain: Chain, q: Array) -> Array:
-    """The frame that each joint starts from and the tool's: (m, n + 1, 4, 4), at q: (m, n) without offsets."""
+def joint_plan(chain: Chain) -> Plan:
+    """The way to the frame that each joint starts from and to the tool's, made when it is first asked for."""
     plan = _plans.get(chain)
     if plan is None:
         segments = [[Constant(C, mark=True)] for C in chain.constants]
         plan = _plans[chain] = Plan(segments, chain.revolute, chain.offsets)
+    return plan
+
+
+def joint_frames_of(chain: Chain, q: Array) -> Array:
+    """The frame that each joint starts from and the tool's: (m, n + 1, 4, 4), at q: (m, n) without offsets."""
     out = np.empty((len(q), chain.n + 1, 4, 4))
-    plan.frames(q, out)
+    joint_plan(chain).frames(q, out)
     return out
 
 

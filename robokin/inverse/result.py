@@ -18,7 +18,7 @@ class Solution:
     q: (n,) [rad | m]; `branch` names it (shoulder, elbow, wrist) or is empty; the errors are those of its
     pose against the target, measured by forward kinematics [m, rad]. `free` names the joints that may
     trade motion with each other at this configuration without moving the hand (a self-motion), in
-    numbers from 1; it is empty at a regular configuration.
+    numbers from 1; it is empty where the solution stands alone.
     """
 
     q: Array
@@ -35,7 +35,8 @@ class Result:
 
     `complete` is true only where the solver guarantees that every solution is listed; `reason` says why
     there is none; `nearest` is then the closest configuration found. `counts` says how many candidates
-    were left after each filter.
+    were left after each filter. `families` is true where every solution is listed or differs from a listed
+    one only in joints that are free on their own, whatever the others do.
     """
 
     solutions: tuple[Solution, ...]
@@ -44,6 +45,7 @@ class Result:
     reason: str | None = None
     nearest: Solution | None = None
     counts: Mapping[str, int] = field(default_factory=dict)
+    families: bool = False
 
     @property
     def reachable(self) -> bool:

@@ -11,13 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from robokin.errors import InputError
 from robokin.inverse.analysis import Analysis, Task, analysis_of
-from robokin.inverse.blocks import BLOCK, HELD_SAMPLES, merged, solve_block, spread
+from robokin.inverse.blocks import BLOCK, merged, solve_block
 from robokin.inverse.branches import branch_names
-from robokin.inverse.nearest import SINGULAR, free_joints, nearest_configuration, numeric_solutions
-from robokin.inverse.numeric import error_and_jacobian
+from robokin.inverse.closest import TOGETHER, beyond_reach, nearest_configurations
+from robokin.inverse.nearest import free_at, numeric_solutions
 from robokin.inverse.result import BatchResult, Result, Solution
+from robokin.inverse.spread import well_spread
 from robokin.inverse.verify import Found, distinct, nothing, within_limits, wrapped
-from robokin.kinematics.chain import chain_of
 from robokin.kinematics.forward import forward_kinematics
 from robokin.model import Robot
 from robokin.spatial import nearest_rotation, rotation_error, transform
@@ -39,6 +39,9 @@ MOST = 16
 OUTSIDE = "outside the joint limits"
 """The reason where there are solutions but for the limits."""
 
+FAR = "out of reach"
+"""The reason where not even the position can be had."""
+
 
 def solve_ik(
     robot: Robot,
@@ -54,7 +57,8 @@ def solve_ik(
 
     T: (4, 4) or (m, 4, 4) poses of the tool in the world [m]. `limits` lists only what respects the joint
     limits (an angle ±360° counts as the same configuration and is tried). `near` (n,) [rad | m] orders by the
-    greatest joint move from there; otherwise the order is fixed: by q1, then q2, … . `task` is the whole pose,
+    greatest joint move from there; otherwise the order is fixed: by q1, then q2, … ; of an arm with infinitely
+    many solutions well spread ones are listed, each the farthest from those before. `task` is the whole pose,
     the position with the z axis (`approach`), or the position alone. `most` cuts the list.
     Returns a Result for one pose, a BatchResult for several. Raises InputError for what is no pose.
     """
@@ -117,6 +121,17 @@ class Request:
         """(n, 2) the limits that searches stay within."""
         return self.robot.limits if self.limits else np.tile([-np.inf, np.inf], (self.robot.n, 1))
 
+    @property
+    def middle(self) -> Array:
+        """(n,) where a joint is put that may be anywhere [rad | m]: at `near`, or at zero, or amid its limits."""
+        low, high = self.robot.limits.T
+        if self.near is not None:
+            turned, _ = within_limits(self.near[None], self.robot.revolute, self.robot.limits, self.near)
+            return np.clip(turned[0], low, high) if self.limits else self.near
+        with np.errstate(invalid="ignore"):
+            amid = np.where(np.isfinite(low) & np.isfinite(high), (low + high) / 2.0, np.clip(0.0, low, high))
+        return np.where((low <= 0.0) & (high >= 0.0), 0.0, amid)
+
 
 def _request(
     robot: Robot, limits: bool, near: ArrayLike | None, method: Method, task: Task, most: int | None, seed: int
@@ -141,20 +156,25 @@ class _Block:
 
     def __init__(self, request: Request, T: Array) -> None:
         robot, analysis = request.robot, request.analysis
-        self.T = T
+        self.request, self.T = request, T
+        self._nearest: dict[int, tuple[Array, float, float]] = {}
         found = nothing(robot.n)
         if request.method != "numeric":
-            found = solve_block(analysis, T, request.own_limits, _held_near(request))
+            found = solve_block(analysis, T, request.own_limits, request.near, request.middle)
         found, inside = _limited(request, found)
+        if request.method != "numeric" and analysis.solver is not None and analysis.redundancy:
+            missing = np.flatnonzero((np.bincount(found.index[inside], minlength=len(T)) == 0) & ~self.beyond)
+            if len(missing):
+                more = solve_block(analysis, T[missing], request.own_limits, None, request.middle, more=True)
+                found, inside = _limited(request, _with_more(found, more, missing))
         redundant = analysis.redundancy > 0 or analysis.solver is None
         if request.method == "numeric" or (request.method == "auto" and redundant):
-            answered = np.bincount(found.index[inside], minlength=len(T)) > 0
-            missing = np.arange(len(T)) if request.method == "numeric" else np.flatnonzero(~answered)
+            answered = (np.bincount(found.index[inside], minlength=len(T)) > 0) | self.beyond
+            missing = np.flatnonzero(~self.beyond if request.method == "numeric" else ~answered)
             if len(missing):
-                more = numeric_solutions(analysis, T[missing], request.own_limits, request.seed)
-                more = Found(missing[more.index], more.q, more.position, more.angle)
-                both = distinct(merged(found, more), robot.revolute, analysis.size)
-                found, inside = _limited(request, both)
+                more = numeric_solutions(analysis, T[missing], request.own_limits, request.middle, request.seed)
+                more = distinct(more, robot.revolute, analysis.size)
+                found, inside = _limited(request, _with_more(found, more, missing))
         self.closing = np.bincount(found.index, minlength=len(T))
         if request.limits:
             found, inside = found.pick(inside), inside[inside]
@@ -162,7 +182,6 @@ class _Block:
         self.found, self.inside = _ordered(request, found, inside)
         self.count = np.bincount(self.found.index, minlength=len(T))
         self.cut = listed > self.count
-        self.request = request
 
     @cached_property
     def names(self) -> list[str]:
@@ -173,26 +192,35 @@ class _Block:
     def free(self) -> list[tuple[int, ...]]:
         """The joints of each configuration that may trade motion with each other."""
         analysis, q = self.request.analysis, self.found.q
-        free: list[tuple[int, ...]] = [()] * len(q)
-        if analysis.open or analysis.redundancy or not len(q):
-            return free
-        chain, T = chain_of(self.request.robot), self.T[self.found.index]
-        _, J = error_and_jacobian(chain, T, q, analysis.size)
-        least = np.linalg.svd(J, compute_uv=False)[:, -1]
-        for i in np.flatnonzero(least <= SINGULAR):
-            free[i] = free_joints(chain, q[i], T[i], analysis.size)
-        return free
+        return free_at(analysis, q) if len(q) else []
+
+    @cached_property
+    def beyond(self) -> NDArray[np.bool_]:
+        """Which targets are farther off than the arm is long."""
+        return beyond_reach(self.request.analysis, self.T, self.request.own_limits)
+
+    def nearest(self, i: int) -> tuple[Array, float, float]:
+        """The configuration (n,) closest to target i, which has no solution, and its distance [m] and angle [rad].
+
+        Together they take less time each: with it those to the next targets without a solution are found,
+        of the same kind, as often only one kind is asked for.
+        """
+        if i not in self._nearest:
+            alike = (self.count == 0) & ((self.closing > 0) == (self.closing[i] > 0))
+            rows = i + np.flatnonzero(alike[i:])[:TOGETHER]
+            request = self.request
+            found = nearest_configurations(
+                request.analysis, self.T[rows], request.own_limits, request.middle, request.seed
+            )
+            for row, q, position, angle in zip(rows.tolist(), *found, strict=True):
+                self._nearest[row] = q, float(position), float(angle)
+        return self._nearest[i]
 
 
-def _held_near(request: Request) -> Array | None:
-    """Values for the held joints of a redundant arm: those of `near` first, then spread ones."""
-    analysis = request.analysis
-    if not analysis.redundancy or request.near is None:
-        return None
-    rows = spread(analysis, request.own_limits, HELD_SAMPLES)
-    first = np.zeros((1, analysis.chain.n))
-    first[0, : request.robot.n] = request.near
-    return np.concatenate([first, rows])
+def _with_more(found: Found, more: Found, missing: NDArray[np.intp]) -> Found:
+    """All configurations, sorted by target; more's targets are numbered as in `missing`."""
+    both = merged(found, Found(missing[more.index], more.q, more.position, more.angle))
+    return both.pick(np.argsort(both.index, kind="stable"))
 
 
 def _limited(request: Request, found: Found) -> tuple[Found, NDArray[np.bool_]]:
@@ -203,28 +231,27 @@ def _limited(request: Request, found: Found) -> tuple[Found, NDArray[np.bool_]]:
 
 
 def _ordered(request: Request, found: Found, inside: NDArray[np.bool_]) -> tuple[Found, NDArray[np.bool_]]:
-    """By target, then by the move from `near` if there is one, and cut to the number asked for."""
+    """By target, then by the move from `near` if there is one, and cut to the number asked for.
+
+    Of infinitely many some well spread ones; without `near` each is the farthest from those before it.
+    """
+    analysis, revolute = request.analysis, request.robot.revolute
     if not len(found):
         return found, inside
+    scale = np.where(revolute, 1.0, analysis.size)
+    if analysis.redundancy or analysis.solver is None:
+        move = np.max(np.abs(found.q - request.middle) / scale, axis=1)
+        most = MOST if request.most is None else request.most
+        chosen = well_spread(found.index, wrapped(found.q, revolute) / scale, revolute, move, inside, most)
+        found, inside = found.pick(chosen), inside[chosen]
     if request.near is not None:
-        scale = np.where(request.robot.revolute, 1.0, request.analysis.size)
         move = np.max(np.abs(found.q - request.near) / scale, axis=1)
         order = np.lexsort((move, found.index))
         found, inside = found.pick(order), inside[order]
-    most = request.most
-    if most is None and (request.analysis.redundancy or request.analysis.solver is None):
-        most = MOST
-    if most is None:
+    if request.most is None:
         return found, inside
-    first = np.searchsorted(found.index, found.index)
-    rank = np.arange(len(found)) - first
-    if request.analysis.redundancy and request.near is None:
-        # Well spread: evenly out of the sorted list rather than its beginning.
-        counts = np.bincount(found.index)[found.index]
-        step = np.maximum(counts / most, 1.0)
-        keep = np.floor(rank / step) != np.floor((rank - 1) / step)
-    else:
-        keep = rank < most
+    rank = np.arange(len(found)) - np.searchsorted(found.index, found.index)
+    keep = rank < request.most
     return found.pick(keep), inside[keep]
 
 
@@ -237,12 +264,18 @@ def _batch(request: Request, answers: list[_Block]) -> BatchResult:
     inside = np.zeros((len(counts), most), dtype=bool)
     start = 0
     for block in answers:
-        found = block.found
-        place = np.arange(len(found)) - np.repeat(np.cumsum(block.count) - block.count, block.count)
-        row = found.index + start
-        q[row, place], position[row, place], angle[row, place] = found.q, found.position, found.angle
-        inside[row, place] = block.inside
-        start += len(block.T)
+        found, end = block.found, start + len(block.T)
+        if np.all(block.count == most):
+            shape = (len(block.T), most)
+            q[start:end] = found.q.T.reshape(n, *shape).transpose(1, 2, 0)
+            position[start:end], angle[start:end] = found.position.reshape(shape), found.angle.reshape(shape)
+            inside[start:end] = block.inside.reshape(shape)
+        else:
+            place = np.arange(len(found)) - np.repeat(np.cumsum(block.count) - block.count, block.count)
+            row = found.index + start
+            q[row, place], position[row, place], angle[row, place] = found.q, found.position, found.angle
+            inside[row, place] = block.inside
+        start = end
 
     def single(i: int) -> Result:
         block = answers[i // BLOCK]
@@ -250,15 +283,17 @@ def _batch(request: Request, answers: list[_Block]) -> BatchResult:
 
     def reason(i: int) -> str | None:
         block, k = answers[i // BLOCK], i % BLOCK
-        # That the limits are in the way is known without a search for the nearest configuration.
-        return OUTSIDE if block.closing[k] and not block.count[k] else single(i).reason
+        # That the limits are in the way, or the target far off, is known without a search for what is nearest.
+        if block.closing[k] and not block.count[k]:
+            return OUTSIDE
+        return FAR if block.beyond[k] else single(i).reason
 
     def branches() -> list[str]:
         return [name for block in answers for name in block.names]
 
     analysis = request.analysis
     method = "numeric" if request.method == "numeric" else analysis.method
-    complete = analysis.complete and request.method != "numeric"
+    complete = analysis.complete and not analysis.idle and request.method != "numeric"
     return BatchResult(q, counts, position, angle, inside, complete, method, single, branches, reason)
 
 
@@ -271,10 +306,12 @@ def _result(request: Request, block: _Block, i: int) -> Result:
     solutions = tuple(map(Solution, q, names, inside, position, angle, free))
     method = "numeric" if request.method == "numeric" else analysis.method
     complete = analysis.complete and request.method != "numeric" and not block.cut[i]
+    idle = {i + 1 for i in analysis.idle}
+    families = complete and all(idle.issuperset(solution.free) for solution in solutions)
     complete = complete and not any(solution.free for solution in solutions)
     counts = {"closing": int(block.closing[i]), "listed": len(solutions)}
     if solutions:
-        return Result(solutions, complete, method, counts=counts)
+        return Result(solutions, complete, method, counts=counts, families=families)
     reason, nearest = _why_not(request, block, i)
     return Result((), complete, method, reason, nearest, counts)
 
@@ -282,7 +319,7 @@ def _result(request: Request, block: _Block, i: int) -> Result:
 def _why_not(request: Request, block: _Block, i: int) -> tuple[str, Solution]:
     """Why a target has no solution, and the configuration that comes nearest."""
     robot, analysis = request.robot, request.analysis
-    q, position, angle = nearest_configuration(analysis, block.T[i], request.own_limits, request.near, request.seed)
+    q, position, angle = block.nearest(i)
     q, inside = within_limits(wrapped(q[None], robot.revolute), robot.revolute, robot.limits, request.near)
     if analysis.open:
         # What the task leaves open is no error: all of the orientation, or the turn about the tool's z axis.
@@ -291,8 +328,8 @@ def _why_not(request: Request, block: _Block, i: int) -> tuple[str, Solution]:
     nearest = Solution(q[0], branch_names(robot, q)[0], bool(inside[0]), position, angle)
     if block.closing[i]:
         return OUTSIDE, nearest
-    if not analysis.complete and analysis.solver is None:
+    if not analysis.complete and analysis.solver is None and not block.beyond[i]:
         return "none found, which proves nothing: outside the solver's guarantee", nearest
     if analysis.open < 3 and position <= REACHED * analysis.size:
         return "orientation not attainable by this arm at that position", nearest
-    return "out of reach", nearest
+    return FAR, nearest

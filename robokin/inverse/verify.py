@@ -55,7 +55,12 @@ class Found:
 
     def pick(self, which: Index | NDArray[np.bool_]) -> Found:
         """Some of them."""
-        return Found(self.index[which], self.q[which], self.position[which], self.angle[which])
+        if which.dtype == np.bool_:
+            if which.all():
+                return self
+            which = np.flatnonzero(which)
+        q = self.q.T.take(which, axis=1).T
+        return Found(self.index.take(which), q, self.position.take(which), self.angle.take(which))
 
 
 def nothing(n: int) -> Found:
@@ -64,18 +69,34 @@ def nothing(n: int) -> Found:
 
 
 class Poses:
-    """Forward kinematics of a chain (base, joints, virtual joints, tool) in blocks."""
+    """Forward kinematics of a chain (base, joints, virtual joints, tool) against a block of targets."""
 
-    def __init__(self, chain: Chain) -> None:
+    def __init__(self, chain: Chain, T: Array) -> None:
         segments = [[Constant(C, mark=i == chain.n)] for i, C in enumerate(chain.constants)]
         self.plan = Plan(segments, chain.revolute, chain.offsets)
+        # The twelve entries of each target, column by column, as the plan gives them.
+        self.targets = np.ascontiguousarray(T[:, :3].transpose(2, 1, 0)).reshape(12, -1)
 
-    def __call__(self, q: Array) -> Array:
-        """Poses (s, 4, 4) at q (s, n)."""
-        out = np.empty((len(q), 1, 4, 4))
-        for start in range(0, len(q), BLOCK):
-            self.plan.frames(q[start : start + BLOCK], out[start : start + BLOCK])
-        return out[:, 0]
+    def residuals(self, index: Index, q: Array) -> tuple[Array, Array]:
+        """Distances (s,) [m] and angles (s,) [rad] of the poses at q (n, s) from the targets index (s,).
+
+        The angle comes from the chord |R_a - R_b| = 2 √2 sin(angle / 2), which keeps all digits of small
+        ones; up to 1e-8 it is chord / √2 to the last digit, and beyond that its size does not matter here.
+        """
+        position, angle = np.empty(len(index)), np.empty(len(index))
+        off = np.empty((12, min(BLOCK, len(index))))
+        for start in range(0, len(index), BLOCK):
+            part = slice(start, start + BLOCK)
+            block = off[:, : len(index[part])]
+            self.targets.take(index[part], axis=1, out=block, mode="clip")
+            (frame,) = self.plan.columns(q[:, part])
+            for row, entry in zip(block, (entry for column in frame for entry in column), strict=True):
+                row -= entry
+            block *= block
+            block[:9].sum(axis=0, out=angle[part])
+            block[9:].sum(axis=0, out=position[part])
+        angle *= 0.5
+        return np.sqrt(position, out=position), np.sqrt(angle, out=angle)
 
 
 def residuals(T: Array, found: Array) -> tuple[Array, Array]:
@@ -89,27 +110,31 @@ def residuals(T: Array, found: Array) -> tuple[Array, Array]:
     return position, 2.0 * np.arcsin(np.minimum(chord / np.sqrt(8.0), 1.0))
 
 
-def verified(loop: Loop, chain: Chain, poses: Poses, T: Array, closing: Array, candidates: Candidates) -> Found:
+def verified(loop: Loop, chain: Chain, poses: Poses, closing: Array, candidates: Candidates) -> Found:
     """The candidates that close, after a polish of those that close only nearly.
 
-    T: (m, 4, 4) the targets [m]; closing: (m, 4, 4) the same as the loop's last link.
+    poses: of the chain, against the targets; closing: (m, 4, 4) the targets as the loop's last link.
     """
     index, values = candidates.index, candidates.values
-    scale = np.where(chain.revolute, 1.0, loop.size)
-    q = values * scale - chain.offsets
-    position, angle = residuals(T[index], poses(q))
-    rough = (position > EXACT_ENOUGH * loop.size) | (angle > EXACT_ENOUGH)
-    if rough.any():
+    scale = np.where(chain.revolute, 1.0, loop.size)[:, None]
+    q = values.T * scale
+    q -= chain.offsets[:, None]
+    position, angle = poses.residuals(index, q)
+    rough = np.flatnonzero(~(np.maximum(position / loop.size, angle) <= EXACT_ENOUGH))
+    if len(rough):
         polished, _, _ = refine(loop, closing, index[rough], values[rough], NEWTON_STEPS)
-        q[rough] = polished * scale - chain.offsets
-        position[rough], angle[rough] = residuals(T[index[rough]], poses(q[rough]))
+        q[:, rough] = polished.T * scale - chain.offsets[:, None]
+        position[rough], angle[rough] = poses.residuals(index[rough], q[:, rough])
     closes = (position <= CLOSES * loop.size) & (angle <= CLOSES)
-    return Found(index, q, position, angle).pick(closes)
+    return Found(index, q.T, position, angle).pick(closes)
 
 
 def wrapped(q: Array, revolute: NDArray[np.bool_]) -> Array:
-    """Joint values with every angle in [-π, π]."""
-    return np.where(revolute, q - 2.0 * np.pi * np.round(q / (2.0 * np.pi)), q)
+    """Joint values (s, n) with every angle in [-π, π]."""
+    turns = np.round(q.T * np.where(revolute, 0.5 / np.pi, 0.0)[:, None])
+    turns *= -2.0 * np.pi
+    turns += q.T
+    return turns.T
 
 
 def distinct(found: Found, revolute: NDArray[np.bool_], size: float) -> Found:
@@ -120,32 +145,44 @@ def distinct(found: Found, revolute: NDArray[np.bool_], size: float) -> Found:
     """
     if not len(found):
         return found
-    by_target = np.argsort(found.index.astype(np.uint16), kind="stable")  # of 16 bits: counted, not compared
-    index, q = found.index[by_target], wrapped(found.q[by_target], revolute)
-    first = np.flatnonzero(np.diff(index, prepend=-1))
-    counts = np.diff(np.append(first, len(index)))
-    most = int(counts.max())
+    q = wrapped(found.q, revolute)
     scaled = q.T / np.where(revolute, np.pi, size)[:, None]
+    by_target = np.argsort(found.index.astype(np.uint16), kind="stable")  # of 16 bits: counted, not compared
+    counts = np.bincount(found.index)
+    counts = counts[counts > 0]
+    # Each target's configurations side by side in a table.
+    filled = np.arange(int(counts.max())) < counts[:, None]
+    full = bool(filled.all())
+
+    def table(values: Array) -> Array:
+        if full:
+            return values[by_target].reshape(filled.shape)
+        spread = np.full(filled.shape, np.inf)
+        spread[filled] = values[by_target]
+        return spread
+
     # Equal configurations have nearly equal sums of |q|, weighted so that different ones hardly ever do: sorted
     # target by target, only where two neighbours agree is looked at closely.
     weights = 1.0 + np.modf(np.arange(1.0, len(scaled) + 1.0) * 0.6180339887498949)[0]
-    table = np.full((len(first), most), np.inf)
-    filled = np.arange(most) < counts[:, None]
-    table[filled] = weights @ np.abs(scaled)
-    table.sort(axis=1)
+    sums = table(weights @ np.abs(scaled))
+    sums.sort(axis=1)
     with np.errstate(invalid="ignore"):
-        alike = np.any(np.diff(table, axis=1) < SAME * weights.sum(), axis=1)
-    key = np.zeros(len(index))
-    for cells, value in zip(KEY_CELLS, scaled, strict=False):
-        key = key * cells + np.round((np.clip(value, -1.0, 1.0) + 1.0) * (0.5 * (cells - 1)))
-    table[:] = np.inf
-    table[filled] = key
-    order = (first[:, None] + np.argsort(table, axis=1, kind="stable"))[filled]
-    arranged = Found(index, q[order], found.position[by_target][order], found.angle[by_target][order])
+        alike = np.any(np.diff(sums, axis=1) < SAME * weights.sum(), axis=1)
+    key = np.zeros(len(by_target))
+    for cells, value, turns in zip(KEY_CELLS, scaled, revolute, strict=False):
+        half = 0.5 * (cells - 1)
+        part = (value if turns else np.clip(value, -1.0, 1.0)) * half
+        part += half
+        key *= cells
+        key += np.round(part, out=part)
+    first = np.cumsum(counts) - counts
+    places = first[:, None] + np.argsort(table(key), axis=1, kind="stable")
+    order = by_target[places.reshape(-1) if full else places[filled]]
+    arranged = Found(found.index, q, found.position, found.angle).pick(order)
     if not alike.any():
         return arranged
     close = np.repeat(alike, counts)
-    keep = np.ones(len(index), dtype=bool)
+    keep = np.ones(len(order), dtype=bool)
     keep[close] = _first_of_equals(arranged.pick(close), revolute, size)
     return arranged.pick(keep)
 
@@ -190,8 +227,9 @@ def within_limits(
     given = q
     low, high = limits[:, 0] - LIMIT_TOLERANCE, limits[:, 1] + LIMIT_TOLERANCE
     inside = np.ones(len(q), dtype=bool)
+    columns = q.T
     for i in np.flatnonzero(np.isfinite(limits).any(axis=1)):
-        column = q[:, i]
+        column = columns[i]
         fits = (column >= low[i]) & (column <= high[i])
         beyond = near is not None or low[i] < -np.pi or high[i] > np.pi
         if revolute[i] and beyond and not fits.all():
@@ -200,7 +238,8 @@ def within_limits(
                 least, most = np.ceil((low[i] - column) / turn), np.floor((high[i] - column) / turn)
             turned = column + turn * np.where(least <= most, np.clip(0.0, least, most), 0.0)
             fits = (turned >= low[i]) & (turned <= high[i])
-            q = q.copy() if q is given else q
-            q[:, i] = turned
+            columns = columns.copy() if q is given else columns
+            q = columns.T
+            columns[i] = turned
         inside &= fits
     return q, inside

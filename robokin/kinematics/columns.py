@@ -13,7 +13,7 @@ float while it is the same for the whole block. A joint is a dozen fused array o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,7 +92,20 @@ class Plan:
     def frames(self, q: Array, out: Array) -> None:
         """Fill out: (m, marks, 4, 4) with the marked frames at q: (m, n) [rad | m]; m at most a block."""
         m = len(q)
-        values = np.multiply(q.T, self.factors, out=np.empty((self.n, m)))
+        assembled = np.empty((16, m))
+        assembled[12:15] = 0.0
+        assembled[15] = 1.0
+        flat = out.reshape(m, self.marks, 16)
+        for marked, frame in enumerate(self.columns(q.T)):
+            for j, column in enumerate(frame):
+                for r, entry in enumerate(column):
+                    assembled[4 * r + j] = entry
+            flat[:, marked] = assembled.T
+
+    def columns(self, q: Array) -> Iterator[tuple[Column, Column, Column, Column]]:
+        """The columns x, y, z, p of each marked frame in turn, at q: (n, m) [rad | m]; m at most a block."""
+        m = q.shape[1]
+        values = np.multiply(q, self.factors, out=np.empty((self.n, m)))
         if self.offsets is not None:
             values += self.offsets
         for i in self.sums:
@@ -106,11 +119,6 @@ class Plan:
         z: Column = [0.0, 0.0, 1.0]
         p: Column = [0.0, 0.0, 0.0]
         run_x, run_y = x, y
-        assembled = np.empty((16, m))
-        assembled[12:15] = 0.0
-        assembled[15] = 1.0
-        flat = out.reshape(m, self.marks, 16)
-        marked = 0
         for i, shifts in enumerate(self.shifts):
             if i:
                 turn = self.turns[i - 1]
@@ -132,11 +140,7 @@ class Plan:
                 if shift.rotation is not None:
                     x, y, z = (_mixture(weights, x, y, z) for weights in shift.rotation)
                 if shift.mark:
-                    for j, column in enumerate((x, y, z, p)):
-                        for r, entry in enumerate(column):
-                            assembled[4 * r + j] = entry
-                    flat[:, marked] = assembled.T
-                    marked += 1
+                    yield x, y, z, p
 
 
 def cos_sin_of_halves(halves: Array) -> tuple[Array, Array]:

@@ -189,11 +189,14 @@ def rotation_angle(R_a: ArrayLike, R_b: ArrayLike) -> Array:
 
 def rotation_error(R: ArrayLike) -> Array:
     """How far matrices (..., 3, 3) are from rotations: the greatest |RᵀR - I|, or 2 where det R ≤ 0."""
-    R = np.asarray(R, dtype=np.float64)
-    gram = np.swapaxes(R, -1, -2) @ R
-    skew = np.max(np.abs(gram - np.eye(3)), axis=(-1, -2))
-    x, y, z = R[..., 0], R[..., 1], R[..., 2]
-    determinant = np.sum(np.cross(x, y) * z, axis=-1)
+    # Column by column: stacked 3×3 products take four times as long.
+    x, y, z = np.ascontiguousarray(np.moveaxis(np.asarray(R, dtype=np.float64), (-1, -2), (0, 1)))
+    skew = np.zeros(x.shape[1:])
+    for a, b, dot in ((x, x, 1.0), (y, y, 1.0), (z, z, 1.0), (x, y, 0.0), (y, z, 0.0), (z, x, 0.0)):
+        np.maximum(skew, np.abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] - dot), out=skew)
+    determinant = (
+        (x[1] * y[2] - x[2] * y[1]) * z[0] + (x[2] * y[0] - x[0] * y[2]) * z[1] + (x[0] * y[1] - x[1] * y[0]) * z[2]
+    )
     return np.asarray(np.where(determinant > 0.0, skew, np.maximum(skew, 2.0)))
 
 

@@ -225,6 +225,38 @@ def test_a_posture_with_a_self_motion_is_told(call):
     assert "singular: q4, q6" in call("ik", "puma560", *arguments).text
 
 
+def test_a_free_joint_is_told(call):
+    arguments = ["scorbot", "--xyz", "300,40,200", "--approach", "0,0,-1", "--no-limits"]
+    document = call("ik", *arguments, "--near", "0,0,0,0,30", "--json").json
+    assert (document["reachable"], document["complete"], len(document["solutions"])) == (True, False, 4)
+    for solution in document["solutions"]:
+        assert list(solution) == [*SOLUTION, "self_motion"]
+        assert solution["self_motion"] == [5]
+        assert solution["q"][4] == pytest.approx(30)
+    answer = call("ik", *arguments)
+    assert max(map(len, answer.lines)) <= 80
+    assert answer.lines[1] == "4 solutions, all there are but for the value of q5 (closed form)"
+    assert answer.lines[-1] == "free: q5 may have any value; each posture is listed once"
+    # Cut, there may be more.
+    assert "2 solutions, there may be more" in call("ik", *arguments, "--max", "2").text
+
+
+def test_a_redundant_arm_is_told(call):
+    arguments = ["panda", "--xyz", "400,100,400", "--rpy", "180,0,0"]
+    few = call("ik", *arguments, "--max", "3", "--json").json["solutions"]
+    every = call("ik", *arguments, "--json").json["solutions"]
+    assert (len(few), len(every)) == (3, 16)
+    assert few == every[:3]
+    assert all(solution["self_motion"] == [1, 2, 3, 4, 5, 6, 7] for solution in every)
+    answer = call("ik", *arguments, "--max", "3")
+    assert max(map(len, answer.lines)) <= 80
+    assert "q1 to q7 may move together" in answer.text
+    assert "singular" not in answer.text
+    text = call("ik", "puma560", "--xyz", "400,200,300").text
+    assert "free: q6 may have any value" in text
+    assert "q1 to q5 may move together" in text
+
+
 def test_a_tolerance_takes_the_nearest_pose(call):
     arguments = ["ik", "scorbot", "--xyz", "300,40,200", "--rpy", "0,170,8"]
     exact = call(*arguments, "--json")

@@ -1,0 +1,238 @@
+"""The closest configuration where there is no solution: the position is the nearest of all, then the orientation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robokin
+from robokin.inverse.analysis import analysis_of
+from robokin.inverse.closest import beyond_reach, nearest_configurations
+from robokin.inverse.numeric import error_and_jacobian
+from robokin.inverse.second_order import go_down, slope, solve_definite
+from robokin.inverse.solve import solve_many
+from robokin.spatial import nearest_rotation, rotation_angle, transform
+
+ARMS = ["puma560", "ur5e", "planar3r", "scara", "stanford-rtb", "scorbot", "kr210-r2700", "crx10ia", "panda", "iiwa14"]
+"""Of every family: spherical wrist, three parallel axes, planar, a slide, five joints, elimination, redundant."""
+
+EXACT = 1e-9
+"""What a nearest position is accurate to, in the arm's size."""
+
+
+def turned(rng, p):
+    """Poses (m, 4, 4) at p (m, 3) with random orientations."""
+    R = nearest_rotation(rng.normal(size=(len(p), 3, 3)))
+    return transform(R, p)
+
+
+def configurations(robot, analysis, count, rng, bounded=True):
+    """Random configurations (count, n), within the limits or a turn and the arm's size."""
+    reach = np.where(robot.revolute, np.pi, analysis.size)[:, None] * [-1.0, 1.0]
+    low, high = (np.where(np.isinf(robot.limits), reach, robot.limits) if bounded else reach).T
+    return rng.uniform(low, high, (count, robot.n))
+
+
+def scattered(robot, analysis, count, rng, bounded=True):
+    """Targets (count, 4, 4) near and far from where the arm reaches, with orientations at random."""
+    p = robokin.forward_kinematics(robot, configurations(robot, analysis, count, rng, bounded))[:, :3, 3]
+    p += analysis.size * rng.choice([0.02, 0.3, 2.0], (count, 1)) * rng.normal(size=(count, 3))
+    return turned(rng, p)
+
+
+def limits_of(robot, bounded):
+    return robot.limits if bounded else np.tile([-np.inf, np.inf], (robot.n, 1))
+
+
+def closest(robot, T, bounded=True):
+    limits = limits_of(robot, bounded)
+    return nearest_configurations(analysis_of(robot), T, limits, np.clip(0.0, *limits.T), 0)
+
+
+def columns(T):
+    return np.ascontiguousarray(T[:, :3].transpose(2, 1, 0))
+
+
+# The way down ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["puma560", "stanford", "raghavan-roth-rprrpr", "human-arm"])
+def test_slope_and_curvature_are_finite_differences(name, rng):
+    robot = robokin.load(name)
+    analysis = analysis_of(robot)
+    x, w = rng.normal(size=(robot.n, 5)), rng.random(5)
+    T = columns(turned(rng, analysis.size * rng.normal(size=(5, 3))))
+    here, h = slope(analysis.chain, T, x, analysis.size, w), 1e-6
+    for i in range(robot.n):
+        step = h * np.eye(robot.n)[:, i : i + 1]
+        before, after = (slope(analysis.chain, T, x + way, analysis.size, w) for way in (-step, step))
+        assert np.allclose((after.f - before.f) / (2 * h), here.gradient[i], atol=1e-8)
+        assert np.allclose((after.gradient - before.gradient) / (2 * h), here.hessian[:, i], atol=1e-8)
+
+
+def test_definite_matrices_are_solved_and_others_are_named(rng):
+    A = rng.normal(size=(50, 6, 6))
+    eigenvalues = rng.uniform(0.1, 1.0, (50, 6))
+    eigenvalues[::2, rng.integers(6)] *= -1.0
+    Q = np.linalg.qr(A)[0]
+    A = (Q * eigenvalues[:, None]) @ np.swapaxes(Q, 1, 2)
+    b = rng.normal(size=(6, 50))
+    x, definite = solve_definite(np.ascontiguousarray(A.transpose(1, 2, 0)), b)
+    assert np.array_equal(definite, np.arange(50) % 2 == 1)
+    assert np.allclose(np.einsum("sij,js->is", A[definite], x[:, definite]), b[:, definite], atol=1e-10)
+
+
+# The position ------------------------------------------------------------------------------------------
+
+
+def test_a_box(rng):
+    robot = robokin.load("cartesian")
+    T = scattered(robot, analysis_of(robot), 100, rng)
+    q, position, _ = closest(robot, T)
+    zero, ends = (robokin.forward_kinematics(robot, at)[..., :3, 3] for at in (np.zeros(3), np.eye(3)))
+    axes = ends - zero  # orthonormal rows: the nearest point of a box
+    expected = np.clip((T[:, :3, 3] - zero) @ axes.T, *robot.limits.T)
+    assert np.allclose(q, expected, atol=EXACT)
+    assert np.allclose(position, np.linalg.norm(zero + expected @ axes - T[:, :3, 3], axis=1), atol=EXACT)
+
+
+def test_a_ring(rng):
+    robot = robokin.load("planar2r")
+    a1, a2 = (row.a for row in robot.rows if row.a)
+    T = scattered(robot, analysis_of(robot), 100, rng)
+    p = (np.linalg.inv(robot.base) @ T)[:, :3, 3]
+    across = np.linalg.norm(p[:, :2], axis=1)
+    expected = np.hypot(across - np.clip(across, abs(a1 - a2), a1 + a2), p[:, 2])
+    assert np.allclose(closest(robot, T)[1], expected, atol=EXACT)
+
+
+@pytest.mark.parametrize("beyond", [0.0, 1e-14, 1e-12, 1e-10, 1e-9, 1e-8, 1e-6, 1e-4, 1e-2, 1.0])
+def test_a_stretched_arm(beyond, rng):
+    """At the edge of the reach the distance has no slope and, exactly there, no curvature either."""
+    robot = robokin.load("planar3r")
+    analysis = analysis_of(robot)
+    angle = rng.uniform(-np.pi, np.pi, 10)
+    q = np.stack([angle, 0 * angle, 0 * angle], axis=1)
+    T = robokin.forward_kinematics(robot, q)
+    T[:, :3, 3] *= 1.0 + beyond
+    expected = beyond * analysis.size
+    assert np.allclose(closest(robot, T)[1], expected, atol=EXACT * analysis.size)
+
+
+@pytest.mark.parametrize("bounded", [True, False])
+@pytest.mark.parametrize("name", ARMS)
+def test_no_configuration_comes_nearer(name, bounded, rng):
+    """Against the best of many descents of the position alone, started anywhere."""
+    robot = robokin.load(name)
+    analysis, limits, count = analysis_of(robot), limits_of(robot, bounded), 100
+    T = scattered(robot, analysis, 12, rng, bounded)
+    q, position, angle = closest(robot, T, bounded)
+    scale = np.where(robot.revolute, 1.0, analysis.size)[:, None]
+    began = np.tile(configurations(robot, analysis, count, rng, bounded), (len(T), 1)).T / scale
+    many = np.repeat(columns(T), count, axis=2)
+    low_high = limits[:, :1] / scale, limits[:, 1:] / scale
+    nothing = np.zeros(began.shape[1])
+    ended = go_down(analysis.chain, many, began, analysis.size, low_high, nothing, steps=40, still=1e-9, least=1e-10)
+    brute = analysis.size * np.sqrt(2.0 * ended[1]).reshape(len(T), count).min(axis=1)
+    assert np.all(position <= brute + EXACT * analysis.size)
+    if bounded:
+        assert robot.within_limits(q).all()
+    found = robokin.forward_kinematics(robot, q)
+    assert np.allclose(np.linalg.norm(found[:, :3, 3] - T[:, :3, 3], axis=1), position, atol=1e-12 * analysis.size)
+    assert np.allclose([rotation_angle(a[:3, :3], b[:3, :3]) for a, b in zip(T, found, strict=True)], angle, atol=1e-7)
+
+
+# Then the orientation ----------------------------------------------------------------------------------
+
+
+def test_of_the_configurations_at_the_position_that_with_the_least_angle(rng):
+    robot = robokin.load("anthropomorphic")
+    q = configurations(robot, analysis_of(robot), 60, rng)
+    T = turned(rng, robokin.forward_kinematics(robot, q)[:, :3, 3])
+    _, position, angle = closest(robot, T)
+    assert np.max(position) < EXACT
+    everything = solve_many(robot, T, task="position")
+    least = np.array(
+        [
+            min(rotation_angle(goal[:3, :3], robokin.forward_kinematics(robot, s.q)[:3, :3]) for s in answer.solutions)
+            for goal, answer in zip(T, everything, strict=True)
+        ]
+    )
+    assert np.all(angle >= least - 1e-6)
+    assert np.mean(angle <= least + 1e-6) >= 0.95
+
+
+def test_a_wrist_that_turns_any_way_takes_no_position(rng):
+    """The first three joints of a PUMA place the wrist's centre, the tool's origin; the others turn it at will."""
+    robot = robokin.load("puma560-craig")
+    T = scattered(robot, analysis_of(robot), 40, rng)
+    _, position, angle = closest(robot, T)
+    assert np.mean(position > 0.01 * analysis_of(robot).size) > 0.3
+    assert np.max(angle) < 1e-6
+
+
+@pytest.mark.parametrize("name", ["scorbot", "thumb"])
+def test_five_joints_turn_as_far_as_the_position_lets_them(name, rng):
+    """What the position leaves free of the joints has no slope left: the angle's gradient is normal to it."""
+    robot = robokin.load(name)
+    analysis = analysis_of(robot)
+    reached = robokin.forward_kinematics(robot, configurations(robot, analysis, 30, rng, bounded=False))
+    T = turned(rng, reached[:, :3, 3])
+    q, position, angle = closest(robot, T, bounded=False)
+    assert np.max(position) < EXACT * analysis.size
+    error, J = error_and_jacobian(analysis.chain, T, q, analysis.size)
+    gradient = np.einsum("sij,si->sj", J[:, 3:], error[:, 3:])
+    _, values, Vt = np.linalg.svd(J[:, :3])
+    regular = (values[:, -1] > 0.05) & (angle < 3.0)
+    assert np.mean(regular) > 0.3
+    assert np.max(np.abs(np.einsum("skj,sj->sk", Vt[:, 3:], gradient)[regular])) < 1e-3
+
+
+# The answers -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["ur5e", "scorbot", "panda"])
+def test_alone_as_in_a_batch_to_the_last_digit(name, rng):
+    robot = robokin.load(name)
+    T = scattered(robot, analysis_of(robot), 20, rng)
+    together = closest(robot, T)
+    for i in (0, 7, 19):
+        for alone, among in zip(closest(robot, T[i : i + 1]), together, strict=True):
+            assert np.array_equal(alone[0], among[i])
+
+
+@pytest.mark.parametrize("task", ["pose", "approach", "position"])
+@pytest.mark.parametrize("limits", [True, False])
+def test_a_batch_says_what_the_targets_say_alone(task, limits, rng):
+    robot = robokin.load("puma560")
+    T = scattered(robot, analysis_of(robot), 12, rng)
+    batch = robokin.solve_ik(robot, T, task=task, limits=limits)
+    for i in (0, 3, 5, 11):
+        alone = robokin.solve_ik(robot, T[i], task=task, limits=limits)
+        assert batch.reason(i) == batch[i].reason == alone.reason
+        assert (alone.nearest is None) == alone.reachable
+        if alone.nearest is not None:
+            assert np.array_equal(batch[i].nearest.q, alone.nearest.q)
+            assert batch[i].nearest.position_error == alone.nearest.position_error
+
+
+@pytest.mark.parametrize("name", [*ARMS, "cartesian", "cylindrical", "spherical", "human-arm"])
+def test_a_bound_of_the_reach(name, rng):
+    robot = robokin.load(name)
+    analysis = analysis_of(robot)
+    T = robokin.forward_kinematics(robot, configurations(robot, analysis, 1000, rng))
+    assert not beyond_reach(analysis, T, robot.limits).any()
+    far = T.copy()
+    far[:, :3, 3] += 100.0 * analysis.size
+    assert beyond_reach(analysis, far, robot.limits).all()
+    assert beyond_reach(analysis, far, limits_of(robot, False)).all() == robot.revolute.all()
+
+
+def test_among_equals_the_one_that_is_near():
+    """Beside a SCARA's column elbow left and right are as near to a target too high up."""
+    robot = robokin.load("scara")
+    T = robokin.forward_kinematics(robot, [0.3, 0.9, 0.1, 0.2])
+    T[2, 3] += 10.0
+    for near in ([0.3, 0.9, 0.1, 0.2], robokin.solve_ik(robot, T, near=[1.2, -0.9, 0.1, 1.1]).nearest.q):
+        nearest = robokin.solve_ik(robot, T, near=near).nearest
+        assert np.max(np.abs(np.delete(nearest.q - near, 2))) < 1e-6
