@@ -1,4 +1,4 @@
-"""Runs every benchmark, or those whose names are given: `python -m benchmarks [forward] [pipes] [inverse] [start]`."""
+"""Runs all benchmarks, or those whose names are given: `python -m benchmarks forward pipes inverse mobility start`."""
 
 from __future__ import annotations
 
@@ -9,9 +9,17 @@ import sys
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
-from benchmarks import forward, inverse, machine, pipes, start  # noqa: E402 - after the environment is set
+# The environment has to be set first.
+from benchmarks import forward, inverse, machine, mobility, pipes, start, workspace  # noqa: E402
 
-BENCHMARKS = {"forward": forward.run, "pipes": pipes.run, "inverse": inverse.run, "start": start.run}
+BENCHMARKS = {
+    "forward": forward.run,
+    "pipes": pipes.run,
+    "inverse": inverse.run,
+    "workspace": workspace.run,
+    "mobility": mobility.run,
+    "start": start.run,
+}
 
 
 def main() -> None:

@@ -49,8 +49,8 @@ def run() -> None:
         limit = f" (limit {LIMITS[name]})" if name in LIMITS else ""
         remark = f"{analysis.method}, analysis {analysed:.0f} ms, found {share:.2%}, {result.count.mean():.1f} a pose"
         line(f"{name}{limit}", f"{taken[name]:.1f}", remark)
-    _limits("puma560", 20_000)
-    _limits("panda", 500)
+    _limits("puma560", 100_000)
+    _limits("panda", 20_000)
     _peers(taken)
 
 

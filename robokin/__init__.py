@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from robokin.description import load as load
+    from robokin.description import load_mechanism as load_mechanism
+    from robokin.description import load_wheeled as load_wheeled
     from robokin.errors import DescriptionError as DescriptionError
     from robokin.errors import InputError as InputError
     from robokin.errors import RobokinError as RobokinError
@@ -20,14 +22,20 @@ if TYPE_CHECKING:
     from robokin.kinematics.forward import forward_kinematics as forward_kinematics
     from robokin.kinematics.forward import link_frames as link_frames
     from robokin.kinematics.jacobian import jacobian as jacobian
+    from robokin.mobility.verdict import mobility_of as mobility_of
+    from robokin.mobility.wheeled import manoeuvrability_of as manoeuvrability_of
     from robokin.model import Mechanism as Mechanism
     from robokin.model import Robot as Robot
+    from robokin.model import WheeledBase as WheeledBase
+    from robokin.workspace.analyse import analyse_workspace as analyse_workspace
 
 __version__ = "0.1.0"
 
 # Names are imported when they are first used, so that the command line starts without numpy.
 _HOMES = {
     "load": "robokin.description",
+    "load_mechanism": "robokin.description",
+    "load_wheeled": "robokin.description",
     "RobokinError": "robokin.errors",
     "InputError": "robokin.errors",
     "DescriptionError": "robokin.errors",
@@ -35,8 +43,12 @@ _HOMES = {
     "link_frames": "robokin.kinematics.forward",
     "solve_ik": "robokin.inverse.solve",
     "jacobian": "robokin.kinematics.jacobian",
+    "mobility_of": "robokin.mobility.verdict",
+    "manoeuvrability_of": "robokin.mobility.wheeled",
     "Mechanism": "robokin.model",
     "Robot": "robokin.model",
+    "analyse_workspace": "robokin.workspace.analyse",
+    "WheeledBase": "robokin.model",
 }
 
 __all__ = ["__version__", *_HOMES]

@@ -12,12 +12,15 @@ import pytest
 import robokin
 
 PACKAGE = Path(robokin.__file__).parent
-ORDER = ["errors", "units", "spatial", "model", "kinematics", "description", "inverse", "workspace", "mobility", "cli"]
+ORDER = [
+    "errors", "units", "spatial", "model", "kinematics", "symbolic", "description", "inverse", "workspace", "mobility",
+    "pictures", "cli",
+]  # fmt: skip
 """Each room imports only rooms before it. description (text to model) also needs the Denavit-Hartenberg
 matrices; what calculates must not need description, which `CALCULATING` says."""
 
-CALCULATING = ["errors", "units", "spatial", "model", "kinematics", "inverse", "workspace", "mobility"]
-HOMES = {"yaml": "description", "typer": "cli", "rich": "cli/output"}
+CALCULATING = ["errors", "units", "spatial", "model", "kinematics", "symbolic", "inverse", "workspace", "mobility"]
+HOMES = {"yaml": "description", "typer": "cli", "rich": "cli/output", "matplotlib": "pictures"}
 
 
 def modules():
@@ -84,6 +87,11 @@ def test_help_starts_without_the_heavy_libraries():
 def test_a_json_answer_needs_no_table_and_no_validator():
     names = loaded_by("fk", "puma560", "--q", "home", "--json")
     assert not {"rich.table", "pydantic", "robokin.description.mechanisms", "robokin.cli.rows"} & names
+
+
+def test_a_workspace_in_text_needs_no_matplotlib():
+    names = loaded_by("workspace", "puma560", "--samples", "4096")
+    assert not [name for name in names if name.startswith("matplotlib")]
 
 
 def test_importing_the_package_imports_nothing_heavy():

@@ -21,7 +21,9 @@ COMMANDS = {
     "validate": "Check descriptions.",
     "schema": "The format of descriptions as a JSON Schema.",
     "fk": "Forward kinematics: where is the hand?",
-    "ik": "Inverse kinematics: every joint configuration that reaches a pose.",
+    "ik": "Inverse kinematics: every configuration that reaches a pose.",
+    "workspace": "What an arm can reach, and how freely the tool can turn.",
+    "dof": "How freely can it move? Grübler's count, and the truth.",
     "frame": "Evaluate a transform expression.",
 }
 """Every command with its line in the overview; its module is `robokin.cli.commands.<name>_command`."""

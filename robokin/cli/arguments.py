@@ -9,16 +9,18 @@ from robokin.cli.output.numbers import counted
 from robokin.description.expressions import Scope, evaluate
 from robokin.description.library import load_any
 from robokin.errors import ExpressionError, InputError, did_you_mean
-from robokin.model import Mechanism, Robot
+from robokin.model import Robot, WheeledBase
 from robokin.units import Units
 
 Array = NDArray[np.float64]
 
 
 def load_robot(name: str, overrides: dict[str, str]) -> Robot:
-    """The robot that a command works on. Raises InputError, also for a mechanism."""
+    """The robot that a command works on. Raises InputError, also for a mechanism or a wheeled base."""
     loaded = load_any(name, overrides)
-    if isinstance(loaded, Mechanism):
+    if isinstance(loaded, WheeledBase):
+        raise InputError(f"{name} is a wheeled base, expected a robot")
+    if not isinstance(loaded, Robot):
         raise InputError(f"{name} is a mechanism (links and joints that may form loops), expected a robot")
     return loaded
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.model import Robot
+from robokin.model import Mechanism, Robot, WheeledBase
 from robokin.spatial import (
     axis_angle_from_rotation,
     euler_from_rotation,
@@ -21,6 +21,15 @@ if TYPE_CHECKING:
     from robokin.cli.poses import Poses
 
 Array = NDArray[np.float64]
+
+
+KINDS = {Robot: "robot", Mechanism: "mechanism", WheeledBase: "wheeled"}
+"""What the key `kind` says of that which a description describes."""
+
+
+def kind_of(entry: Robot | Mechanism | WheeledBase) -> str:
+    """`robot`, `mechanism` or `wheeled`."""
+    return KINDS[type(entry)]
 
 
 def poses_in(T: Array, units: Units) -> Array:

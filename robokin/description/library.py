@@ -1,4 +1,4 @@
-"""The library of robots and mechanisms: names to files."""
+"""The library of robots, mechanisms and wheeled bases: names to files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from robokin.description.read import read_file
 from robokin.errors import InputError, nearest, or_list, shown
-from robokin.model import Mechanism, Robot
+from robokin.model import Mechanism, Robot, WheeledBase
 
 
 @cache
@@ -30,8 +30,8 @@ def is_path(name: str) -> bool:
     return "/" in name or os.sep in name or bool(Path(name).suffix)
 
 
-def load_any(name_or_path: str | Path, overrides: Mapping[str, str] | None = None) -> Robot | Mechanism:
-    """The robot or mechanism with a library name or in a file.
+def load_any(name_or_path: str | Path, overrides: Mapping[str, str] | None = None) -> Robot | Mechanism | WheeledBase:
+    """The robot, mechanism or wheeled base with a library name or in a file.
 
     `overrides` replaces parameters by expressions in the file's units. Raises InputError for an unknown
     name, with the nearest ones, and DescriptionError for a wrong description.

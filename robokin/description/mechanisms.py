@@ -21,7 +21,7 @@ from robokin.description.cells import (
     vector_of,
 )
 from robokin.description.read import Head
-from robokin.description.schema import FREEDOMS, MAX_ROWS, MECHANISM_JOINT, SPACES
+from robokin.description.schema import EXPECTED, FREEDOMS, MAX_ROWS, MECHANISM_JOINT, SPACES
 from robokin.description.tree import Node
 from robokin.errors import did_you_mean, shown
 from robokin.model import Mechanism, MechanismJoint
@@ -63,18 +63,36 @@ def read_mechanism(fields: MappingType[str, Node], head: Head) -> Mechanism:
             )
         names[joint.name] = i
         joints.append(joint)
+    output = _link(fields["output"], links, "the output") if "output" in fields else ""
+    if output == ground:
+        raise fields["output"].mark.error(
+            f"found the ground '{shown(output)}' as the output, expected a link that moves"
+        )
     return Mechanism(
         name=head.name,
         space=space,  # type: ignore[arg-type]  # choice_of has made sure
         links=links,
         joints=tuple(joints),
         ground=ground,
+        output=output,
+        expected=_expected(fields["expected"], head.context) if "expected" in fields else {},
         id=head.id,
         description=head.description,
         source=head.source,
         units=head.context.units,
         parameters=head.parameters,
     )
+
+
+def _expected(node: Node, context: Context) -> dict[str, int]:
+    """What the source says of the mechanism's freedoms."""
+    numbers = {}
+    for key, cell in fields_of(node, EXPECTED, "what is expected").items():
+        number = raw_number_of(cell, context.scope, f"expected {key}")
+        if number != int(number):
+            raise cell.mark.error(f"found {number:g} as expected {key}, expected a whole number")
+        numbers[key] = int(number)
+    return numbers
 
 
 def _joint(

@@ -1,4 +1,4 @@
-"""A file or a text to a Robot or a Mechanism: what both kinds of description share."""
+"""A file or a text to a Robot, a Mechanism or a WheeledBase: what all kinds of description share."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from pathlib import Path
 
 from robokin.description.cells import Context, choice_of, expression_text, fields_of, text_of
 from robokin.description.expressions import NAME, RESERVED, Parameters
-from robokin.description.schema import MECHANISM, ROBOT, UNITS, VERSION
+from robokin.description.schema import KINDS, MECHANISM, ROBOT, UNITS, VERSION, WHEELED
 from robokin.description.tree import Mapping, Mark, Node, Scalar, describe, read_tree
 from robokin.errors import DescriptionError, ExpressionError, InputError, did_you_mean, nearest, shown
-from robokin.model import Mechanism, Robot
+from robokin.model import Mechanism, Robot, WheeledBase
 from robokin.units import Units
 
 MAX_BYTES = 1 << 20
@@ -30,8 +30,10 @@ class Head:
     context: Context
 
 
-def read_file(path: Path, overrides: MappingType[str, str] | None = None, id: str = "") -> Robot | Mechanism:
-    """The robot or mechanism in a file.
+def read_file(
+    path: Path, overrides: MappingType[str, str] | None = None, id: str = ""
+) -> Robot | Mechanism | WheeledBase:
+    """The robot, mechanism or wheeled base in a file.
 
     `overrides` replaces parameters by expressions in the file's units. Raises DescriptionError with
     line and column when the description is wrong, InputError when the file cannot be read.
@@ -61,18 +63,28 @@ def read_file(path: Path, overrides: MappingType[str, str] | None = None, id: st
 
 def read_text(
     text: str, file: str = "description", overrides: MappingType[str, str] | None = None, id: str = ""
-) -> Robot | Mechanism:
-    """The robot or mechanism that a text describes; `file` is the name that errors give it."""
+) -> Robot | Mechanism | WheeledBase:
+    """The robot, mechanism or wheeled base that a text describes; `file` is the name that errors give it."""
     root = read_tree(text, file)
     if not isinstance(root, Mapping):
         raise root.mark.error(f"found {describe(root)}, expected a description: `robokin: 1`, `name: …`, `joints: …`")
     if not root.entries:
         raise root.mark.error("found nothing in the file, expected a description: `robokin: 1`, `name: …`")
-    mechanism = "links" in root.entries or "space" in root.entries
+    wheeled = "kind" in root.entries or "wheels" in root.entries
+    mechanism = not wheeled and ("links" in root.entries or "space" in root.entries)
     _check_version(root)
-    fields = fields_of(root, MECHANISM if mechanism else ROBOT, "a mechanism" if mechanism else "a robot")
+    if "kind" in root.entries:
+        _check_kind(root.entries["kind"])
+    if wheeled:
+        fields = fields_of(root, WHEELED, "a wheeled base")
+    else:
+        fields = fields_of(root, MECHANISM if mechanism else ROBOT, "a mechanism" if mechanism else "a robot")
     head = _head(fields, overrides or {}, id, file)
     # Only the reader that is needed is imported: it is part of the time that a command takes to start.
+    if wheeled:
+        from robokin.description.wheeled import read_wheeled
+
+        return read_wheeled(fields, head)
     if mechanism:
         from robokin.description.mechanisms import read_mechanism
 
@@ -91,6 +103,13 @@ def _check_version(root: Mapping) -> None:
     text = text_of(node, "the format's version")
     if text != str(VERSION):
         raise node.mark.error(f"found format version '{shown(text)}', expected {VERSION}: this robokin reads no other")
+
+
+def _check_kind(node: Node) -> None:
+    text = text_of(node, "the kind: wheeled")
+    if text in ("robot", "mechanism"):
+        raise node.mark.error(f"found '{text}' as the kind, expected no 'kind' in the description of a {text}")
+    choice_of(node, KINDS, "the kind")
 
 
 def _head(fields: dict[str, Node], overrides: MappingType[str, str], id: str, file: str) -> Head:

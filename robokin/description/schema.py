@@ -80,6 +80,16 @@ MECHANISM: Fields = {
     "links": Field("names", "the links' names; the first is the ground", required=True),
     "ground": Field("text", "the link that stands still, if it is not the first"),
     "joints": Field("mechanism_joints", "the joints between the links", required=True),
+    "output": Field("text", "the link whose motion the mechanism serves; `robokin dof` says how it moves"),
+    "expected": Field("expected", "what the source says of its freedoms, to be compared with what is found"),
+}
+
+EXPECTED: Fields = {
+    "grubler": Field("number", "the count, F"),
+    "mobility": Field("number", "the true mobility"),
+    "overconstraints": Field("number", "redundant constraints, of λ a loop"),
+    "output": Field("number", "freedoms of the output"),
+    "idle": Field("number", "freedoms that do not move the output"),
 }
 
 FREEDOMS = {
@@ -101,6 +111,37 @@ MECHANISM_JOINT: Fields = {
     "actuated": Field("flag", "whether the joint is driven"),
 }
 
+KINDS = ("wheeled",)
+WHEEL_TYPES = ("fixed", "steered", "castor", "swedish")
+STEERINGS = ("independent", "parallel")
+
+WHEELED: Fields = {
+    **COMMON,
+    "kind": Field("text", "wheeled: a base on wheels; a robot and a mechanism state no kind", True, KINDS),
+    "wheels": Field("wheels", "the wheels, in the base's frame", required=True),
+    "steering": Field("text", "whether the steered wheels always point the same way; default independent",
+                      choices=STEERINGS),
+    "expected": Field("base_expected", "what the source says of its freedoms, to be compared with what is found"),
+}  # fmt: skip
+
+WHEEL: Fields = {
+    "name": Field("text", "the wheel's name; default its number"),
+    "type": Field("text", "the kind of wheel", required=True, choices=WHEEL_TYPES),
+    "at": Field("place", "where it touches the ground (a castor: its swivel)", required=True),
+    "angle": Field("number", "the direction in which it rolls, from the x axis; default 0"),
+    "radius": Field("number", "its radius"),
+    "offset": Field("number", "a castor's distance from swivel to wheel"),
+    "roller": Field("number", "a Swedish wheel's angle from its way to its rollers': 90° omni, 45° mecanum"),
+    "driven": Field("flag", "whether a motor rolls it"),
+    "turned": Field("flag", "whether a motor steers it"),
+}
+
+BASE_EXPECTED: Fields = {
+    "mobility": Field("number", "the degree of mobility"),
+    "steerability": Field("number", "the degree of steerability"),
+    "manoeuvrability": Field("number", "the degree of manoeuvrability: the sum of both"),
+}
+
 
 def json_schema() -> dict[str, Any]:
     """The format as a JSON Schema (draft 2020-12), for editors that complete and check YAML."""
@@ -120,10 +161,13 @@ def json_schema() -> dict[str, Any]:
         "units": _object(UNITS),
         "parameters": {"type": ["object", "null"], "additionalProperties": {"$ref": "#/$defs/number"}},
         "poses": {"type": "object", "additionalProperties": numbers},
+        "expected": _object(EXPECTED),
+        "base_expected": _object(BASE_EXPECTED),
         "limits": {**numbers, "minItems": 2, "maxItems": 2},
         "names": {"type": "array", "items": text, "minItems": 2},
         "vector": {**numbers, "minItems": 2, "maxItems": 3},
         "point": {**numbers, "minItems": 2, "maxItems": 3},
+        "place": {**numbers, "minItems": 2, "maxItems": 2},
         "vectors": {"type": "array", "items": {"$ref": "#/$defs/vector"}, "minItems": 2, "maxItems": 2},
         "axis": {"anyOf": [{"enum": ["x", "y", "z"]}, {**numbers, "minItems": 3, "maxItems": 3}]},
         "row": {"anyOf": [_object(DH_ROW), _object(FRAME_ROW)]},
@@ -139,12 +183,13 @@ def json_schema() -> dict[str, Any]:
             ]
         },
         "mechanism_joints": {"type": "array", "items": _object(MECHANISM_JOINT), "minItems": 1},
+        "wheels": {"type": "array", "items": _object(WHEEL), "minItems": 1},
     }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "robokin description, version 1",
-        "description": "A robot (a serial chain) or a mechanism (links and joints that may form loops).",
-        "anyOf": [_object(ROBOT), _object(MECHANISM)],
+        "description": "A robot (a serial chain), a mechanism (links and joints, with loops), or a wheeled base.",
+        "anyOf": [_object(ROBOT), _object(MECHANISM), _object(WHEELED)],
         "$defs": definitions,
     }
 

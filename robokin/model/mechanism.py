@@ -54,22 +54,28 @@ class MechanismJoint:
 
 @dataclass(frozen=True, eq=False)
 class Mechanism:
-    """Links, the joints between them, and the link that stands still."""
+    """Links, the joints between them, the link that stands still, and the one that the others serve, if named.
+
+    `expected` is what the source says: `grubler`, `mobility`, `overconstraints`, `output`, `idle`.
+    """
 
     name: str
     space: Space
     links: tuple[str, ...]
     joints: tuple[MechanismJoint, ...]
     ground: str
+    output: str = ""
     id: str = ""
     description: str = ""
     source: str = ""
     units: Units = field(default_factory=Units)
     parameters: Mapping[str, float] = field(default_factory=dict)
+    expected: Mapping[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Make the parameters read-only."""
+        """Make the mappings read-only."""
         object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
+        object.__setattr__(self, "expected", MappingProxyType(dict(self.expected)))
 
     @property
     def order(self) -> int:

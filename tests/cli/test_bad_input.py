@@ -20,6 +20,7 @@ USAGE = {
     "an unknown robot": (["fk", "puma56", "--q", "home"], ["'puma56'", "did you mean puma560"]),
     "a robot like none": (["show", "qqqqqq"], ["'qqqqqq'", "robokin list"]),
     "a file that is not there": (["show", "./none.yaml"], ["none.yaml", "no such file"]),
+    "a wheeled base": (["fk", "car", "--q", "1"], ["car is a wheeled base", "expected a robot"]),
     "a mechanism": (["fk", "four-bar", "--q", "1"], ["four-bar is a mechanism", "expected a robot"]),
     "an unknown option": ([*HOME, "--fromat", "json"], ["'--fromat'", "'--format'", "--help"]),
     "one dash": ([*FK, "-q", "home"], ["no option '-q'", "did you mean '--q'"]),

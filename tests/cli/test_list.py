@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robokin.description import library_names
+from robokin.description import library_names, load_any
 
 KEYS = ["id", "name", "kind", "joints", "dof", "source"]
 
@@ -24,10 +24,14 @@ def test_what_an_entry_says(call):
     assert (entries["four-bar"]["kind"], entries["four-bar"]["joints"]) == ("mechanism", "RRRR")
     assert (entries["scara"]["joints"], entries["scara"]["dof"]) == ("RRPR", 4)
     for record in entries.values():
-        assert record["kind"] in ("robot", "mechanism")
+        assert record["kind"] in ("robot", "mechanism", "wheeled")
         assert record["source"]
         if record["kind"] == "robot":
             assert record["dof"] == len(record["joints"])
+        elif record["dof"] is not None:
+            assert record["dof"] == load_any(record["id"]).expected["mobility"]
+    assert (entries["sarrus"]["dof"], entries["car"]["dof"]) == (1, 1)
+    assert (entries["car"]["kind"], entries["car"]["joints"]) == ("wheeled", "2 fixed, 2 steered")
 
 
 def test_the_formats_agree(call):
@@ -43,11 +47,12 @@ def test_every_name_is_in_the_table_on_a_line_of_its_own(call):
     lines = call("list").lines
     names = library_names()
     assert set(names) <= {line.split()[0] for line in lines if line[:1].strip()}
-    robots = sum(record["kind"] == "robot" for record in call("list", "--json").json)
-    assert lines[-1] == f"{robots} robots, {len(names) - robots} mechanisms"
+    kinds = [record["kind"] for record in call("list", "--json").json]
+    robots, mechanisms, bases = (kinds.count(kind) for kind in ("robot", "mechanism", "wheeled"))
+    assert lines[-1] == f"{robots} robots, {mechanisms} mechanisms, {bases} wheeled bases"
 
 
-@pytest.mark.parametrize("words", [["kuka"], ["KUKA", "arc"], ["mechanism"], ["RRPR"]])
+@pytest.mark.parametrize("words", [["kuka"], ["KUKA", "arc"], ["mechanism"], ["wheeled"], ["RRPR"]])
 def test_words_narrow_the_list(call, words):
     records = call("list", "--json").json
     found = call("list", *words, "--json").json
@@ -61,3 +66,4 @@ def test_nothing_found_is_an_empty_list(call):
     assert call("list", "no such thing", "-f", "csv").csv == [KEYS]
     assert call("list", "no such thing").lines[-1] == "0 robots, 0 mechanisms"
     assert call("list", "puma560-akb").lines[-1] == "1 robot, 0 mechanisms"
+    assert call("list", "mecanum").lines[-1] == "0 robots, 0 mechanisms, 1 wheeled base"

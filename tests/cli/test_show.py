@@ -56,7 +56,7 @@ def test_every_document_and_its_rows_in_other_units(call, name):
     (record,) = call("show", name, "-f", "jsonl", *units).jsonl
     assert record["units"] == {"length": "in", "angle": "rad"}
     table = call("show", name, "-f", "csv", *units).csv
-    rows = record["rows"] if record["kind"] == "robot" else record["joints"]
+    rows = record[{"robot": "rows", "mechanism": "joints", "wheeled": "wheels"}[record["kind"]]]
     assert table[0] == list(rows[0])
     assert len(table) == len(rows) + 1
     assert all(len(row) == len(table[0]) for row in table)
@@ -105,6 +105,14 @@ def test_a_mechanism_has_links_and_joints(call):
     )
     assert [joint["name"] for joint in record["joints"]] == ["A", "B", "C", "D"]
     assert "F = 1" in call("show", "four-bar").text
+
+
+def test_a_wheeled_base_has_wheels(call):
+    record = call("show", "mecanum", "--json").json
+    assert (record["base"], record["kind"], record["steering"]) == ("mecanum", "wheeled", "independent")
+    assert [wheel["roller"] for wheel in record["wheels"]] == [-45, 45, 45, -45]
+    assert record["wheels"][1]["at"] == [235, -150]
+    assert "the steered wheels stay parallel" in call("show", "synchro-drive").text
 
 
 def test_names_are_words_and_no_style(call, tmp_path):

@@ -17,7 +17,7 @@ from robokin.description.expressions import Parameters, Scope, evaluate
 from robokin.description.library import library_folder
 from robokin.description.transforms import evaluate_transform
 from robokin.errors import DescriptionError, ExpressionError, RobokinError
-from robokin.model import Mechanism, Robot
+from robokin.model import Mechanism, Robot, WheeledBase
 from robokin.units import Units
 
 
@@ -46,7 +46,7 @@ def read_or_say(text):
         assert "\n" not in str(error)
         assert "expected" in error.message or "did you mean" in error.message, error.message
         return
-    assert isinstance(value, Robot | Mechanism)
+    assert isinstance(value, Robot | Mechanism | WheeledBase)
     repr(value)
     if isinstance(value, Robot):
         for row in value.rows:
@@ -56,6 +56,9 @@ def read_or_say(text):
             assert np.all(np.isfinite(T))
             assert np.allclose(T[:3, :3] @ T[:3, :3].T, np.eye(3), atol=1e-9)
         assert all(np.all(np.isfinite(pose)) for pose in value.poses.values())
+    elif isinstance(value, WheeledBase):
+        for wheel in value.wheels:
+            assert all(map(math.isfinite, (wheel.x, wheel.y, wheel.angle, wheel.radius, wheel.offset, wheel.roller)))
     else:
         for joint in value.joints:
             assert joint.axes is None or np.allclose(np.linalg.norm(joint.axes, axis=1), 1.0)
@@ -79,7 +82,8 @@ WORDS = st.sampled_from(
      "ground",
      "type", "theta", "d", "a", "alpha", "offset", "limits", "origin", "axis", "axes", "at", "pitch", "freedoms",
      "normal",
-     "actuated", "length", "angle", "mm", "deg", "R", "P", "F", "RRP", "revolute", "prismatic", "fixed", "helical",
+     "actuated", "kind", "wheels", "wheeled", "steering", "output", "expected", "castor", "swedish", "steered",
+     "length", "angle", "mm", "deg", "R", "P", "F", "RRP", "revolute", "prismatic", "fixed", "helical",
      "planar",
      "frames", "modified", "true", "x", "1", "0", "-90", "1e-3", "pi/2", "1/0", "9**9**9", ".inf", "nan", "~", "''",
      "é", "<<",

@@ -13,14 +13,14 @@ import robokin
 from robokin.description import library_names, load, load_any
 from robokin.description.library import is_path, library_folder
 from robokin.errors import InputError, RobokinError
-from robokin.model import Mechanism, Robot
+from robokin.model import Mechanism, Robot, WheeledBase
 from robokin.units import METRES, RADIANS
 
 
 @pytest.mark.parametrize("name", library_names())
 def test_every_entry_of_the_library_loads(name):
     entry = load_any(name)
-    assert isinstance(entry, Robot | Mechanism)
+    assert isinstance(entry, Robot | Mechanism | WheeledBase)
     assert entry.id == name
     assert entry.source
     assert entry.units.length in METRES
@@ -32,7 +32,7 @@ def test_every_entry_of_the_library_loads(name):
 @pytest.mark.parametrize("name", library_names())
 def test_every_number_of_the_library_is_finite_and_every_limit_holds_something(name):
     entry = load_any(name)
-    if isinstance(entry, Mechanism):
+    if not isinstance(entry, Robot):
         return
     assert np.all(np.isfinite(entry.base))
     assert np.all(np.isfinite(entry.tool))

@@ -17,12 +17,16 @@ def command(
     format: FormatOption = None,
     json: JsonOption = False,
 ) -> int:
-    """The library of robots and mechanisms: names to use in every other command.
+    """The library of robots, mechanisms and wheeled bases: names to use in every other command.
+
+    The freedoms (dof) of a mechanism are those that its file states: where a count is wrong only its geometry tells,
+    and robokin dof works that out. Those of a wheeled base are its degree of mobility.
 
     Examples:
         robokin list
         robokin list kuka
         robokin list mechanism --json
+        robokin list wheeled
     """
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.output.text import csv_records, json_document, json_line
@@ -53,15 +57,15 @@ def _plain(text: str) -> str:
 
 
 def _record(entry: Any) -> dict[str, Any]:
+    from robokin.cli.records import kind_of
     from robokin.model import Robot
 
-    robot = isinstance(entry, Robot)
     return {
         "id": entry.id,
         "name": entry.name,
-        "kind": "robot" if robot else "mechanism",
+        "kind": kind_of(entry),
         "joints": entry.types,
-        "dof": entry.n if robot else None,
+        "dof": entry.n if isinstance(entry, Robot) else entry.expected.get("mobility"),
         "source": entry.source,
     }
 
@@ -78,5 +82,8 @@ def _table(records: list[dict[str, Any]]) -> bytes:
     for record in records:
         dof = "–" if record["dof"] is None else str(record["dof"])
         drawn.add_row(record["id"], record["name"], record["joints"], dof)
-    robots = sum(record["kind"] == "robot" for record in records)
-    return render(drawn, f"\n{counted(robots, 'robot')}, {counted(len(records) - robots, 'mechanism')}")
+    kinds = [record["kind"] for record in records]
+    sums = [counted(kinds.count("robot"), "robot"), counted(kinds.count("mechanism"), "mechanism")]
+    if "wheeled" in kinds:
+        sums.append(counted(kinds.count("wheeled"), "wheeled base"))
+    return render(drawn, "\n" + ", ".join(sums))

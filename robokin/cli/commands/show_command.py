@@ -31,34 +31,41 @@ def command(
     length: LengthOption = None,
     set_: SetOption = None,
 ) -> int:
-    """A robot's table, its class, its wrist and its freedoms; a mechanism's joints and its count.
+    """A robot's table, its class, its wrist and its freedoms; a mechanism's joints and its count; a base's wheels.
 
     Examples:
         robokin show puma560
         robokin show four-bar
+        robokin show car
         robokin show arm.yaml --length m --angle rad
         robokin show scara-frames --set l1=500 --json
     """
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.output.text import csv_records, json_document, json_line
     from robokin.description.library import load_any
-    from robokin.model import Robot
+    from robokin.model import Mechanism, Robot
 
     kind = format_of(output, output_format(format, json))
     loaded = load_any(robot, parameter_overrides(set_))
     units = effective_units(loaded.units, length, angle)
-    is_robot = isinstance(loaded, Robot)
-    record = robot_record(loaded, units) if isinstance(loaded, Robot) else mechanism_record(loaded, units)
+    if isinstance(loaded, Robot):
+        record, rows, drawn = robot_record(loaded, units), "rows", _robot_table
+    elif isinstance(loaded, Mechanism):
+        record, rows, drawn = mechanism_record(loaded, units), "joints", _mechanism_table
+    else:
+        from robokin.cli.wheel_tables import wheel_record, wheel_table
+
+        record, rows, drawn = wheel_record(loaded, units), "wheels", wheel_table
     with sink(output) as stream:
         if kind == "json":
             stream.write(json_document(record))
         elif kind == "jsonl":
             stream.write(json_line(record))
         elif kind == "csv":
-            rows = record["rows"] if is_robot else record["joints"]
-            stream.write(csv_records(list(rows[0]), [[_cell(value) for value in row.values()] for row in rows]))
+            cells = [[_cell(value) for value in row.values()] for row in record[rows]]
+            stream.write(csv_records(list(record[rows][0]), cells))
         else:
-            stream.write(_robot_table(record) if is_robot else _mechanism_table(record))
+            stream.write(drawn(record))
     return 0
 
 
@@ -158,6 +165,7 @@ def mechanism_record(mechanism: Mechanism, units: Units) -> dict[str, Any]:
         "space": mechanism.space,
         "links": list(mechanism.links),
         "ground": mechanism.ground,
+        "output": mechanism.output or None,
         "grubler": grubler(mechanism.order, len(mechanism.links), freedoms),
         "parameters": dict(mechanism.parameters),
         "joints": [

@@ -39,7 +39,8 @@ def command(
             stream.write(csv_records(list(records[0]), [list(record.values()) for record in records]))
         else:
             for record in records:
-                detail = f"{record['kind']} {record['name']}" if record["valid"] else record["error"]
+                noun = "wheeled base" if record["kind"] == "wheeled" else record["kind"]
+                detail = f"{noun} {record['name']}" if record["valid"] else record["error"]
                 stream.write(encode(f"{'ok   ' if record['valid'] else 'wrong'}  {_shown(record, detail)}\n"))
     wrong = sum(not record["valid"] for record in records)
     if wrong:
@@ -53,9 +54,9 @@ def _shown(record: dict[str, Any], detail: str) -> str:
 
 
 def _verdict(file: str) -> dict[str, Any]:
+    from robokin.cli.records import kind_of
     from robokin.description.library import load_any
     from robokin.errors import InputError
-    from robokin.model import Robot
 
     record: dict[str, Any] = {
         "file": file, "valid": False, "kind": None, "name": None, "error": None, "line": None, "column": None,
@@ -68,6 +69,6 @@ def _verdict(file: str) -> dict[str, Any]:
         record["column"] = getattr(error, "column", 0) or None
     else:
         record["valid"] = True
-        record["kind"] = "robot" if isinstance(loaded, Robot) else "mechanism"
+        record["kind"] = kind_of(loaded)
         record["name"] = loaded.name
     return record

@@ -33,8 +33,8 @@ def format_of(output: str | None, chosen: str | None, *, arrays: bool = False) -
 
 
 @contextlib.contextmanager
-def sink(output: str | None) -> Iterator[IO[bytes]]:
-    """A stream of bytes to the output, standard output for None.
+def sink(output: str | None, option: str = "--output") -> Iterator[IO[bytes]]:
+    """A stream of bytes to the output, standard output for None; `option` is what named it.
 
     A file is written under a temporary name beside it and takes its own name when all is written; on
     any error, and on Ctrl-C, nothing is left.
@@ -54,18 +54,18 @@ def sink(output: str | None) -> Iterator[IO[bytes]]:
     # A link stays a link: what it points to is replaced.
     path = Path(os.path.realpath(output))
     if path.is_dir():
-        raise OutputError(f"--output {output}: found a directory, expected a place that can be written")
+        raise OutputError(f"{option} {output}: found a directory, expected a place that can be written")
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     try:
         stream = temporary.open("xb")
     except OSError as error:
-        raise OutputError(f"--output {output}: {error.strerror}, expected a place that can be written") from None
+        raise OutputError(f"{option} {output}: {error.strerror}, expected a place that can be written") from None
     try:
         with stream:
             yield stream
         temporary.replace(path)
     except OSError as error:
-        raise OutputError(f"--output {output}: {error.strerror}, nothing was written") from None
+        raise OutputError(f"{option} {output}: {error.strerror}, nothing was written") from None
     finally:
         with contextlib.suppress(OSError):
             temporary.unlink(missing_ok=True)

@@ -1,0 +1,138 @@
+"""The workspace on all cores: positions and orientations a second, whole runs, and memory at any number of samples."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+import robokin
+from benchmarks.machine import best_of, line
+from robokin.workspace.attitudes import attitudes, group_of
+from robokin.workspace.extremes import extent
+from robokin.workspace.orientation import fractions
+from robokin.workspace.parallel import in_order, usable_cores
+from robokin.workspace.sampling import TASK, joint_values, positions, sample_blocks
+from robokin.workspace.space import Space, space_of
+
+SAMPLES = 1 << 25
+POSITIONS = 8e6
+"""Positions of the PUMA's tool a second that are wanted of two cores."""
+
+QUERIES = 150_000
+"""Orientation queries a second that are wanted of two cores."""
+
+MEMORY = 300
+ROBOTS = ("planar3r", "puma560", "scara", "stanford", "thumb", "panda")
+RUN_LIMIT = 3.0
+
+WRITTEN = """
+import resource, sys
+import robokin
+from robokin.cli.sample_files import write_samples
+from robokin.cli.sample_rows import Samples
+from robokin.workspace.space import space_of
+
+name, samples, orientation = sys.argv[1], int(sys.argv[2]), sys.argv[3] or None
+space = space_of(robokin.load("puma560"))
+kind = name.rpartition(".")[2]
+write_samples(name, Samples(space, space.robot.units, kind, samples=samples, joints=True, orientation=orientation))
+peaks = [resource.getrusage(who).ru_maxrss / 1024 for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+print(max(peaks))
+"""
+
+
+def farthest(space: Space, start: int) -> float:
+    """A number that needs every position of a task, so that none is sent from process to process."""
+    p = positions(space, joint_values(space, "sobol", 0, start, TASK, SAMPLES))
+    return float(np.max(p))
+
+
+def run() -> None:
+    cores = usable_cores()
+    print(f"workspace, on {cores} cores")
+    _positions(cores)
+    _orientations(cores)
+    _extremes()
+    _runs()
+    _files()
+
+
+def _positions(cores: int) -> None:
+    for name in ("puma560", "planar3r", "panda"):
+        space = space_of(robokin.load(name))
+        count = SAMPLES if name == "puma560" else SAMPLES // 4
+        for used in sorted({1, cores}):
+            work = partial(farthest, space)
+            taken = best_of(
+                lambda work=work, used=used, count=count: list(in_order(work, range(0, count, TASK), used)), 3
+            )
+            wanted = f"limit {POSITIONS / 1e6:.0f} on two cores" if name == "puma560" and used > 1 else ""
+            line(f"{name}, million positions a second, {used} cores", f"{count / taken / 1e6:.1f}", wanted)
+
+
+def _orientations(cores: int) -> None:
+    for name in ("puma560", "planar3r", "ur5e"):
+        space = space_of(robokin.load(name))
+        tried = attitudes(space, group_of(space), 128, 0)
+        block = next(sample_blocks(space, "random", 1, 4096))
+        start = time.perf_counter()
+        found = fractions(space, tried, block.p.T, cores)
+        taken = time.perf_counter() - start
+        asked = len(block.p.T) * len(tried.rotations)
+        wanted = f"limit {QUERIES:,}; " if name == "puma560" else ""
+        line(
+            f"{name}, orientation queries a second",
+            f"{asked / taken:,.0f}",
+            f"{wanted}{np.mean(found):.1%} can be reached",
+        )
+
+
+def _extremes() -> None:
+    for name in ("puma560", "panda"):
+        space = space_of(robokin.load(name))
+        line(f"{name}, bounds and reach, ms", f"{best_of(partial(extent, space)) * 1e3:.0f}", "on one core")
+
+
+def _runs() -> None:
+    for name in ROBOTS:
+        command = [sys.executable, "-m", "robokin", "workspace", name, "--json"]
+        start = time.perf_counter()
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        taken = time.perf_counter() - start
+        answer = json.loads(done.stdout)
+        size = next(key for key in ("volume", "area", "length", "dimension") if key in answer)
+        remark = f"limit {RUN_LIMIT:.0f}; {size} {answer[size]:.6g}"
+        if f"{size}_error" in answer:
+            remark += f" ± {answer[f'{size}_error'] / answer[size]:.2%}"
+        line(f"robokin workspace {name}, s", f"{taken:.2f}", remark)
+
+
+def _files() -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        for ending, samples, orientation in (
+            (".npy", 4_000_000, ""),
+            (".csv", 500_000, "rpy"),
+            (".jsonl", 200_000, "rpy"),
+        ):
+            path = str(Path(folder) / f"cloud{ending}")
+            start = time.perf_counter()
+            done = subprocess.run(
+                [sys.executable, "-c", WRITTEN, path, str(samples), orientation],
+                capture_output=True,
+                text=True,
+                check=True,
+            )
+            rate = samples / (time.perf_counter() - start)
+            with_ = "joints and orientations" if orientation else "joints"
+            remark = (
+                f"{Path(path).stat().st_size / 1e6:.0f} MB; peak memory {float(done.stdout):.0f} MB (limit {MEMORY})"
+            )
+            line(f"{samples:,} samples with {with_} to {ending}, a second", f"{rate:,.0f}", remark)
+            Path(path).unlink()

@@ -1,0 +1,69 @@
+"""A base on wheels. Metres and radians throughout."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from types import MappingProxyType
+
+from robokin.units import Units
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """A wheel of a base, in the base's frame.
+
+    type: `fixed`, `steered`, `castor` or `swedish`. x, y [m]: where it touches the ground (a castor: its swivel).
+    angle [rad]: the direction in which it rolls, from the x axis, at a steered wheel that of its zero. radius [m].
+    offset [m]: a castor's, from swivel to wheel. roller [rad]: a Swedish wheel's, from the direction in which the wheel
+    rolls to the direction in which its rollers let it slip; 90° for an omni wheel, 45° for a mecanum wheel. driven:
+    whether a motor turns the wheel; turned: whether a motor steers it.
+    """
+
+    name: str
+    type: str
+    x: float
+    y: float
+    angle: float = 0.0
+    radius: float = 0.0
+    offset: float = 0.0
+    roller: float = 0.0
+    driven: bool = False
+    turned: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class WheeledBase:
+    """A rigid base on wheels on a plane; `parallel` says that its steered wheels always point the same way."""
+
+    name: str
+    wheels: tuple[Wheel, ...]
+    parallel: bool = False
+    id: str = ""
+    description: str = ""
+    source: str = ""
+    units: Units = field(default_factory=Units)
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    expected: Mapping[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Make the mappings read-only."""
+        object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
+        object.__setattr__(self, "expected", MappingProxyType(dict(self.expected)))
+
+    @property
+    def types(self) -> str:
+        """The wheels by type in words, such as `2 fixed, 1 castor`."""
+        counts: dict[str, int] = {}
+        for wheel in self.wheels:
+            counts[wheel.type] = counts.get(wheel.type, 0) + 1
+        return ", ".join(f"{count} {kind}" for kind, count in counts.items())
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        """Copied and pickled by its fields: the read-only view of a mapping cannot be pickled."""
+        values = (getattr(self, part.name) for part in fields(self))
+        return type(self), tuple(dict(value) if isinstance(value, MappingProxyType) else value for value in values)
+
+    def __repr__(self) -> str:
+        """A line that names the base."""
+        return f"<WheeledBase {self.id or self.name!r}: {len(self.wheels)} wheels>"

@@ -1,0 +1,186 @@
+"""From a workspace to what its pictures show."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.kinematics.forward import forward_kinematics, link_frames
+from robokin.model import Robot
+from robokin.pictures.outline import CELLS, Outline, trace
+from robokin.pictures.picture import Cloud, Degrees, Panel
+from robokin.pictures.views import UPRIGHT, View, freed, section_view, slice_view
+from robokin.workspace.membership import finitely_many
+from robokin.workspace.sampling import joint_values, positions
+from robokin.workspace.space import Space, space_of
+
+Array = NDArray[np.float64]
+
+SHADOW = 1 << 17
+"""Configurations that show how large a picture must be, and what a set without a plane looks like."""
+
+MARGIN = 0.03
+"""Room about sampled points, as a part of their spread: their bounds are that much short at most."""
+
+COARSE = 64
+"""Cells along the longer side of an outline where each point must be sought for."""
+
+FEW_HALVINGS = 6
+"""Bisections of a side of such an outline: to a sixtieth of its cell, which is a twentieth of a line's width."""
+
+ROUND = 360
+"""Corners of a circle."""
+
+CLOUD = 24000
+"""Points of a cloud: more are a solid ball to the eye, and a slow page."""
+
+BEND = 0.5
+"""Joint angle [rad] of an arm that has no named pose: neither straight nor folded."""
+
+
+def solid_views(space: Space, say: Callable[[float], str], size: float, section: bool = True) -> list[View]:
+    """The planes that show a solid: the section that is turned about the first axis, and a level slice where the set
+    is widest; an upright slice where there is no such section, or `section` is False.
+
+    `say` writes a length [m] in its unit; slices are at whole multiples of size [m], or finer ones in a small set.
+    """
+    p = sampled(space)
+    turned = section_view(space)
+    middle = 0.5 * (p.min(axis=0) + p.max(axis=0))
+    level, aside = float(middle[2]), float(middle[1])
+    if turned is not None and turned.labels[1] == "z":
+        r, z = turned.places(p).T
+        level, aside = float(z[np.argmax(r)]), float(turned.origin[1])
+    # Round to the unit where that is fine enough.
+    size = min(size, 10.0 ** np.floor(np.log10(0.01 * float(np.max(np.ptp(p, axis=0))))))
+    level, aside = (round(value / size) * size + 0.0 for value in (level, aside))
+    side = turned if turned is not None and section else slice_view(space, "y", aside, say(aside))
+    return [side, slice_view(space, "z", level, say(level))]
+
+
+def panel(
+    view: View, cells: int | None = None, arms: Sequence[Array] = (), pose: str = "", degrees: Degrees | None = None
+) -> Panel:
+    """The set in a plane, with arms (k, 3) [m] in a named pose and, where limits matter, its outline without them."""
+    outline = outline_in(view, cells)
+    without = None
+    robot = view.space.robot
+    limited = any(robot.revolute[i] and not view.space.full[i] for i in range(robot.n))
+    if limited:
+        without = outline_in(replace(view, space=space_of(freed(robot))), cells)
+    shown = [view.places(arm) for arm in arms]
+    return Panel(view.title, view.labels, outline, without, shown, pose, degrees, view.radial)
+
+
+def outline_in(view: View, cells: int | None = None) -> Outline:
+    """The outline of what is reachable in a plane."""
+    space = view.space
+    low, high = bounds_in(view)
+    if rings_about(view):
+        return _rings(view, float(np.max(np.abs([low, high]))))
+    if finitely_many(space):
+        return trace(view.contains, low, high, cells or CELLS)
+    cells = cells or COARSE
+    p = sampled(space, 8 * SHADOW)
+    if not view.radial:
+        beside = np.abs((p - view.origin) @ np.cross(view.right, view.up))
+        p = p[beside <= 0.5 * float(np.max(high - low)) / cells]
+    return trace(view.contains, low, high, cells, FEW_HALVINGS, view.places(p))
+
+
+def rings_about(view: View) -> bool:
+    """Whether what is seen is made of whole rings about the axis of symmetry."""
+    axis = view.space.axis
+    if axis is None or view.radial:
+        return False
+    return bool(np.linalg.norm(np.cross(np.cross(view.right, view.up), axis[:3, 2])) < UPRIGHT)
+
+
+def _rings(view: View, reach: float) -> Outline:
+    """The outline of rings about the axis of symmetry: only their radii are sought for."""
+    axis = view.space.axis
+    assert axis is not None
+    foot = np.array([(axis[:3, 3] - view.origin) @ view.right, (axis[:3, 3] - view.origin) @ view.up])
+    step = 2.0 * (reach + float(np.linalg.norm(foot))) / (4 * CELLS)
+
+    def inside(r: Array) -> NDArray[np.bool_]:
+        return view.contains(foot + np.stack([np.abs(r), np.zeros_like(r)], axis=1))
+
+    r = np.asarray(step * (np.arange(4 * CELLS) + 0.5), dtype=np.float64)
+    mask = np.concatenate([inside(r), [False]])
+    changes = np.flatnonzero(mask[1:] != mask[:-1])
+    within = np.where(mask[changes], changes, changes + 1) * step + 0.5 * step
+    without = np.where(mask[changes], changes + 1, changes) * step + 0.5 * step
+    for _ in range(2 * FEW_HALVINGS):
+        middle = 0.5 * (within + without)
+        at = inside(middle)
+        within, without = np.where(at, middle, within), np.where(at, without, middle)
+    turn = np.linspace(0.0, 2.0 * np.pi, ROUND, endpoint=False)
+    ring = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    # The outermost is an outside, and so is every other one; they end at the axis or at a hole about it.
+    loops = [foot + r * (ring if mask[i] else ring[::-1]) for i, r in zip(changes, within, strict=True)]
+    return Outline(tuple(loops), step)
+
+
+def bounds_in(view: View) -> tuple[Array, Array]:
+    """Corners (2,), (2,) [m] of a box that holds the set's shadow on a plane."""
+    places = view.places(sampled(view.space))
+    low, high = places.min(axis=0), places.max(axis=0)
+    margin = MARGIN * float(np.max(high - low))
+    low, high = low - margin, high + margin
+    if view.radial:
+        # The axis belongs to the picture: what is missing about it is a hole.
+        low[0] = 0.0
+    return low, high
+
+
+def cloud(space: Space, seed: int = 0, arms: Sequence[Array] = (), cut: bool = False) -> Cloud:
+    """Points all over the reachable set, evenly: one to a cell; `cut` takes out the quarter in front."""
+    p = sampled(space, 4 * SHADOW, seed)
+    low, size = p.min(axis=0), np.ptp(p, axis=0)
+    # Cells so small that there are about as many as points are wanted.
+    step = float(np.max(size)) / 12.0
+    keep = np.arange(len(p))
+    for _ in range(24):
+        index = np.floor((p - low) / step).astype(np.int64)
+        keep = np.unique((index[:, 0] * 4096 + index[:, 1]) * 4096 + index[:, 2], return_index=True)[1]
+        if len(keep) >= CLOUD:
+            break
+        step /= 1.1
+    chosen = p[np.sort(keep)]
+    if cut:
+        middle = 0.5 * (p.min(axis=0) + p.max(axis=0))
+        chosen = chosen[~((chosen[:, 0] > middle[0]) & (chosen[:, 1] < middle[1]))]
+    return Cloud(chosen, chosen[:, 2], "", list(arms))
+
+
+def arm_line(robot: Robot) -> tuple[Array, str]:
+    """The arm from its base to its tool, (k, 3) [m], in a pose that the description names, and the pose's name."""
+    name = "home" if "home" in robot.poses else next(iter(robot.poses), "")
+    if name:
+        q = robot.poses[name]
+    else:
+        low, high = np.clip(robot.limits, -10.0, 10.0).T
+        q = np.clip(np.where(robot.revolute, BEND, 0.5 * (low + high)), low, high)
+    frames, tool = link_frames(robot, q), forward_kinematics(robot, q)[:3, 3]
+    corners = [frames[0, :3, 3]]
+    for before, after in pairwise(frames):
+        step = after[:3, 3] - before[:3, 3]
+        # A link of a table runs along the joint's axis and across it: its corner is drawn.
+        if robot.convention == "standard":
+            corners.append(before[:3, 3] + (step @ before[:3, 2]) * before[:3, 2])
+        elif robot.convention == "modified":
+            corners.append(after[:3, 3] - (step @ after[:3, 2]) * after[:3, 2])
+        corners.append(after[:3, 3])
+    line = np.array([*corners, tool])
+    apart = np.linalg.norm(np.diff(line, axis=0), axis=1) > 1e-9
+    return line[np.concatenate([[True], apart])], name
+
+
+def sampled(space: Space, count: int = SHADOW, seed: int = 0) -> Array:
+    """(m, 3) where an even sequence of configurations puts the tool [m]."""
+    return positions(space, joint_values(space, "sobol", seed, 0, count, count)).T

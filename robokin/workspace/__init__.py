@@ -1,0 +1,1 @@
+"""What a robot can reach: sampling, size with error bounds, dexterity."""

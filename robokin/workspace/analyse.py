@@ -1,0 +1,70 @@
+"""`analyse_workspace`: everything that is said of a robot's workspace, put together."""
+
+from __future__ import annotations
+
+from robokin.errors import InputError
+from robokin.model import Robot
+from robokin.workspace.extremes import extent
+from robokin.workspace.measure import REDUNDANT, measurable, measure, structural_length
+from robokin.workspace.membership import finitely_many
+from robokin.workspace.orientation import dexterity
+from robokin.workspace.result import Measure, Workspace
+from robokin.workspace.sequence import KINDS, Kind
+from robokin.workspace.space import space_of
+
+SAMPLES = 1 << 17
+"""Configurations that the answers are made from unless it is said otherwise."""
+
+BALL = 4.0 / 3.0 * 3.141592653589793
+"""Volume of the ball of radius 1."""
+
+
+def analyse_workspace(
+    robot: Robot,
+    samples: int = SAMPLES,
+    seed: int = 0,
+    sampling: Kind = "sobol",
+    cores: int | None = None,
+    dextrous: bool = False,
+    voxel: float | None = None,
+) -> Workspace:
+    """What the origin of a robot's tool can reach within the joint limits.
+
+    samples: how many configurations or points may be looked at; the bound of the error falls with it. `sampling` is
+    kept for who draws samples from the result; sizes always come from even sequences. `dextrous` adds how freely
+    the tool can be turned, at places `voxel` [m] apart if it is given. The same answer for a seed on any number
+    of `cores` (None: all). Raises InputError for fewer samples than one, an unknown sampling, a robot without
+    joints and one whose sliding joints have no limits.
+
+    It is not called `workspace`, as is the package that it comes from.
+    """
+    if samples < 1:
+        raise InputError(f"found {samples} samples, expected at least 1")
+    if sampling not in KINDS:
+        raise InputError(f"found sampling '{sampling}', expected {' or '.join(KINDS)}")
+    space = space_of(robot)
+    bounds = extent(space, seed)
+    notes = []
+    if measurable(space):
+        size = measure(space, bounds, samples, seed, cores)
+    else:
+        notes.append(f"the {space.quantity} of a curved set that more joints reach than it has dimensions is not known")
+        size = Measure(float("nan"), float("nan"), "not measured", 0)
+    if space.moving and not finitely_many(space):
+        notes.append(REDUNDANT)
+    length = structural_length(robot)
+    solid = space.dimension == 3 and size.value > 0.0
+    freedom = dexterity(space, bounds, size, samples, seed, voxel, cores) if dextrous else None
+    return Workspace(
+        space=space,
+        samples=samples,
+        seed=seed,
+        sampling=sampling,
+        extent=bounds,
+        measure=size,
+        structural_length=length,
+        length_index=float(length / size.value ** (1.0 / 3.0)) if solid else None,
+        volume_index=float(size.value / (BALL * length**3)) if solid and length > 0.0 else None,
+        dexterity=freedom,
+        notes=tuple(notes),
+    )

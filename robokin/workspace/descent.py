@@ -1,0 +1,278 @@
+"""Reaching for points with more joints than needed: damped Newton steps within the joint limits, many at once.
+
+For a point t the squared distance |t - p(q)|² / 2 is brought down over the joint box: a point is reachable exactly
+where its minimum is zero. The step of least squares dq = Jᵀ(J Jᵀ + λ)⁻¹ e, e = t - p, is taken with the joints
+that stand at a limit and would be pushed over it left out (an active set, found anew at every step), clipped to the
+box, undone where the distance grew, and damped by λ = μ |e|, μ following the success of the steps.
+
+What ends a search is the distance (reached) or a point where no step within the limits comes nearer (a boundary of
+the set, or a barrier inside it). On a barrier other starts go on; the answer "not reachable" is that of all of them.
+"""
+
+from __future__ import annotations
+
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.workspace.placing import Placing, crossed
+from robokin.workspace.sampling import moving_chain
+from robokin.workspace.space import Space
+from robokin.workspace.starts import Starts
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+REACHED = 1e-7
+"""Distance, in the arm's size, at which a point is reached."""
+
+STUCK = 0.01
+"""A search ends at a minimum: where Newton's step promises to take less than this part off the squared distance."""
+
+CLOSE = 0.02
+"""Searches that end this near [size] are taken up again, for they may be near a boundary from inside, where an arm
+must be stretched to the last: what is left to gain is little, and the steps are many."""
+
+STUCK_CLOSE, STEPS_CLOSE = 1e-3, 60
+"""The same two limits for these."""
+
+MU, FLOOR, LEAST = 0.1, 1e-2, 1e-11
+"""The damping at first and the least pivot, as parts of the distance, and of both what is always added [1]."""
+
+POOL = 2048
+"""Searches that go on together: their columns stay in cache."""
+
+BATCH = 16384
+"""Points whose starts are looked up at a time."""
+
+NEAR, FAR = 3, 4
+"""Searches for a point before it is said to be out of reach: from starts near it and from anywhere."""
+
+NEAR_CLOSE, FAR_CLOSE = 8, 16
+"""The same numbers for points that no search reached but one came close to."""
+
+STEPS = 30
+"""Steps of one search: from a start in the same cell five are enough, along a boundary it takes more."""
+
+STEP = 0.6
+"""The longest step of one joint [rad | size]."""
+
+
+class Descent:
+    """Reaching for points with the moving joints of a space."""
+
+    def __init__(self, space: Space) -> None:
+        moving = list(space.moving)
+        self.placing = Placing(moving_chain(space))
+        self.low, self.high, self.full = space.low[moving], space.high[moving], space.full[moving]
+        self.size = space.size
+        self.basis = space.basis if space.basis is not None else np.eye(3)
+        self.turning = self.placing.revolute[:, None, None].astype(np.float64)
+        self.all_turn = bool(self.placing.revolute.all())
+        self.centre = space.centre
+        self.scale = np.where(self.placing.revolute, 1.0, space.size)[:, None]
+        self.lever = self.scale[:, :, None] / space.size
+        self.starts = Starts(self.placing, self.low, self.high, self.full, space.size)
+        # A joint that makes a whole turn may go round more than once.
+        self.box = np.where(self.full, -np.inf, self.low)[:, None], np.where(self.full, np.inf, self.high)[:, None]
+
+    def reachable(self, points: Array) -> Flags:
+        """(m,) whether each of the points (m, 3) [m] is reached."""
+        return self.reached(points)[0]
+
+    def reached(self, points: Array) -> tuple[Flags, Array]:
+        """(m,) whether each of the points (m, 3) [m] is reached, and (n, m) by which values [rad | m]."""
+        p = np.ascontiguousarray(points.T)
+        off = p - self.centre[:, None]
+        off -= self.basis @ (self.basis.T @ off)
+        inside = np.zeros(len(points), dtype=bool)
+        values = np.zeros((len(self.low), len(points)))
+        in_plane = np.flatnonzero(np.sum(off * off, axis=0) <= (REACHED * self.size) ** 2)
+        for start in range(0, len(in_plane), BATCH):
+            part = in_plane[start : start + BATCH]
+            inside[part], values[:, part] = self._sought(p[:, part])
+        return inside, values
+
+    def _sought(self, points: Array) -> tuple[Flags, Array]:
+        """`reached` for points (3, m) of the set's plane, m at most a batch.
+
+        A pool of searches goes on together: one for each point, then the further starts of those not yet reached;
+        where there is room they run beside each other, and what one of them reaches ends the others.
+        """
+        m = points.shape[1]
+        inside, values = np.zeros(m, dtype=bool), np.zeros((len(self.low), m))
+        least = np.full(m, np.inf)
+        self._search(points, np.arange(m), self.starts.near(points, NEAR, FAR), (STUCK, STEPS), inside, least, values)
+        close = np.flatnonzero(~inside & (least <= CLOSE**2))
+        if len(close):
+            self._search(points, close, values[None][:, :, close], (STUCK_CLOSE, STEPS_CLOSE), inside, least, values)
+        close = close[~inside[close]]
+        if len(close):
+            # The best end may lie on a barrier inside the set that another start goes round.
+            others = self.starts.near(points[:, close], NEAR_CLOSE, FAR_CLOSE)[NEAR:]
+            self._search(points, close, others, (STUCK, STEPS), inside, least, values)
+        return inside, values
+
+    def _search(
+        self,
+        points: Array,
+        which: NDArray[np.intp],
+        starts: Array,
+        ends: tuple[float, int],
+        inside: Flags,
+        least: Array,
+        values: Array,
+    ) -> None:
+        """Searches for points[:, which] from each of the starts (k, n, len(which)) in turn, until they are reached."""
+        pool = _Pool(self, points, *ends)
+        for attempt in starts:
+            waiting = np.arange(len(which))
+            while len(waiting):
+                waiting = waiting[~inside[which[waiting]]]
+                room = max(POOL - len(pool), 0)
+                if room > POOL // 4:
+                    take, waiting = waiting[:room], waiting[room:]
+                    pool.add(which[take], attempt[:, take])
+                if len(waiting):
+                    self._note(pool, inside, least, values)
+        while len(pool):
+            self._note(pool, inside, least, values)
+
+    def _note(self, pool: _Pool, inside: Flags, least: Array, values: Array) -> None:
+        """A step of the pool, and what has become known by it."""
+        which, far, q = pool.advance()
+        # Searches for one point may end together: the nearest is noted last, and so stays.
+        order = np.argsort(-far, kind="stable")
+        which, far, q = which[order], far[order], q[:, order]
+        nearer = far < least[which]
+        which, far, q = which[nearer], far[nearer], q[:, nearer]
+        least[which] = far
+        values[:, which] = q
+        reached = which[far <= REACHED**2]
+        inside[reached] = True
+        if len(reached):
+            pool.drop(inside)
+
+    def _model(self, t: Array, q: Array) -> tuple[Array, Array, Array]:
+        """What q (n, m) lack of t, e: (3, m) [size]; the derivatives J of the position (n, 3, m) and, for each joint,
+        J_i - e × z_i (n, 3, m) [size]: its product with J_j, j >= i, is the second derivative of |e|² / 2."""
+        p, J, z = self.placing.with_axes(q)
+        e = (t - p) / self.size
+        J *= self.lever
+        turned = crossed(e, z) if self.all_turn else crossed(e, z) * self.turning
+        return e, J, np.subtract(J, turned, out=turned)
+
+    def _step(self, e: Array, J: Array, H: Array, far: Array, mu: Array, q: Array) -> tuple[Array, Array]:
+        """The step (n, m) [rad | m], and what it promises to take off the squared distance (m,)."""
+        at_low, at_high = q <= self.box[0], q >= self.box[1]
+        pull = np.sum(J * e, axis=1)
+        held = (at_low & (pull < 0.0)) | (at_high & (pull > 0.0))
+        dq, gain = _newton(J, H, pull, held, far, mu)
+        pushed = ((at_low & (dq < 0.0)) | (at_high & (dq > 0.0))) & ~held
+        again = np.flatnonzero(pushed.any(axis=0))
+        if len(again):
+            J, H, pull, far, mu = (part.take(again, axis=-1) for part in (J, H, pull, far, mu))
+            dq[:, again], gain[again] = _newton(J, H, pull, (held | pushed)[:, again], far, mu)
+        dq *= np.minimum(1.0, STEP / np.maximum(np.max(np.abs(dq), axis=0), 1e-300))
+        return dq * self.scale, gain
+
+
+class _Pool:
+    """Searches that go on together, each for its own point and from its own start."""
+
+    def __init__(self, descent: Descent, points: Array, stuck: float, steps: int) -> None:
+        self.descent, self.points, self.stuck, self.steps = descent, points, stuck, steps
+        self.which = np.zeros(0, dtype=np.intp)
+        self.state: list[Array] = []
+
+    def __len__(self) -> int:
+        """How many searches go on."""
+        return len(self.which)
+
+    def add(self, which: NDArray[np.intp], q: Array) -> None:
+        """Searches for points `which` from q (n, k)."""
+        n, k = q.shape
+        e, J = np.zeros((3, k)), np.zeros((n, 3, k))
+        new = [q, q, e, J, J, np.full(k, np.inf), np.full(k, 2.0 * MU), np.zeros(k)]
+        old = self.state or [part[..., :0] for part in new]
+        self.state = [np.concatenate(pair, axis=-1) for pair in zip(old, new, strict=True)]
+        self.which = np.concatenate([self.which, which])
+
+    def drop(self, which: Flags) -> None:
+        """End the searches for points that are known to be reached, `which` (m,)."""
+        over = which[self.which]
+        if over.any():
+            self._keep(np.flatnonzero(~over))
+
+    def _keep(self, keep: NDArray[np.intp]) -> None:
+        self.which = self.which[keep]
+        self.state = [part.take(keep, axis=-1) for part in self.state]
+
+    def advance(self) -> tuple[NDArray[np.intp], Array, Array]:
+        """A step of every search: the points of those that ended, their squared distances and their values."""
+        q, tried, e, J, H, far, mu, steps = self.state
+        e2, J2, H2 = self.descent._model(self.points.take(self.which, axis=1), tried)
+        far2 = np.sum(e2 * e2, axis=0)
+        better = far2 < far
+        mu *= np.where(better, np.where(far2 < 0.1 * far, 0.1, 0.5), 8.0)
+        for old, new in ((q, tried), (e, e2), (J, J2), (H, H2), (far, far2)):
+            np.copyto(old, new, where=better)
+        steps += 1.0
+        dq, gain = self.descent._step(e, J, H, far, mu, q)
+        over = (far <= REACHED**2) | (gain <= self.stuck * far) | (steps > self.steps)
+        out = np.flatnonzero(over)
+        answer = self.which[out], far[out], q[:, out]
+        self.state = [q, np.clip(q + dq, *self.descent.box), e, J, H, far, mu, steps]
+        if len(out):
+            self._keep(np.flatnonzero(~over))
+        return answer
+
+
+def _newton(J: Array, H: Array, pull: Array, held: Flags, far: Array, mu: Array) -> tuple[Array, Array]:
+    """Newton's step (n, m) with some joints held, and what it promises to take off |e|² (m,), infinite where the
+    second derivatives are not those of a minimum."""
+    n = len(J)
+    damping = np.sqrt(far)
+    floor = FLOOR * damping + LEAST
+    damping *= mu
+    damping += LEAST
+    y = pull
+    if held.any():
+        free = np.where(held, 0.0, 1.0)
+        J, H, y = J * free[:, None], H * free[:, None], y * free
+    else:
+        y = y.copy()
+    # Only what is on and right of the diagonal counts; it is brought to L D Lᵀ row by row.
+    A = H[:, None, 0] * J[None, :, 0]
+    A += H[:, None, 1] * J[None, :, 1]
+    A += H[:, None, 2] * J[None, :, 2]
+    plain = np.ones(len(far), dtype=bool)
+    for j in range(n):
+        pivot = A[j, j]
+        pivot += damping
+        plain &= pivot > 0.0
+        np.abs(pivot, out=pivot)
+        np.maximum(pivot, floor, out=pivot)
+        row = A[j, j + 1 :].copy()
+        A[j, j + 1 :] /= pivot
+        for i in range(j + 1, n):
+            A[i, i:] -= A[j, i] * row[i - j - 1 :]
+        y[j + 1 :] -= A[j, j + 1 :] * y[j]
+    diagonal = A[range(n), range(n)]
+    scaled = y / diagonal
+    gain = np.sum(scaled * y, axis=0)
+    for j in reversed(range(n - 1)):
+        scaled[j] -= np.sum(A[j, j + 1 :] * scaled[j + 1 :], axis=0)
+    gain[~plain] = np.inf
+    return scaled, gain
+
+
+_kept: WeakKeyDictionary[Space, Descent] = WeakKeyDictionary()
+
+
+def descent_of(space: Space) -> Descent:
+    """The descent of a space, with its table of starts, made when it is first asked for."""
+    if space not in _kept:
+        _kept[space] = Descent(space)
+    return _kept[space]

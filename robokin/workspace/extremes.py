@@ -1,0 +1,268 @@
+"""How far the tool's origin comes: along the world's axes, and from the base.
+
+Each of the eight questions is the least value over the joint box of
+
+    f(p(q)) = g · p + w/2 |p - c|²,
+
+with w = 0 for a bound along ±g, and g = 0, w = ±1 for the least and the greatest distance from c. Three stages:
+
+1. Starts: the best configurations of several parts of an even sequence, so that they are good and far apart.
+2. Sweeps: one joint after the other is given its best value, the others being held. That is exact: with a joint's
+   axis at o, along z of R, and s what follows it, p = o + R Rot(z, θ) s, so that with h = Rᵀ(g + w (o - c))
+
+       f = h · Rot(z, θ) s + constant = A cos θ + B sin θ + constant,
+
+   least at one angle, or at a limit; a sliding joint makes it a parabola. A whole sweep costs no more than one forward
+   kinematics, ends at the limits exactly, and leaps over the hills between the valleys of one joint.
+3. Newton's method with the exact Hessian, in a region of trust, on the joints that are not held by a limit: to
+   rounding. With J's column i ∂p/∂q_i and i ≤ j, ∂²p/∂q_i∂q_j = z_i × J_j, and 0 where joint i slides.
+
+The sweeps are coordinate descent, whose limit points are stationary (D. P. Bertsekas, Nonlinear Programming, 2nd ed.
+1999, prop. 2.7.1); the step is that of section 1.4 of the same book, negative curvatures turned over.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.padding import joint_frames_of
+from robokin.kinematics.chain import Chain
+from robokin.workspace.result import Extent
+from robokin.workspace.sampling import joint_values, moving_chain, positions
+from robokin.workspace.space import TURN, Space
+
+Array = NDArray[np.float64]
+
+SAMPLES = 1 << 14
+"""Configurations that starts are chosen from."""
+
+STARTS = 32
+"""Starts for each question: the best of every 32nd configuration."""
+
+SWEEPS = 12
+"""Times that each joint is given its best value: the valleys of these functions are not long."""
+
+POLISHED = 8
+"""Ends of the sweeps, for each question, that Newton's method goes on from."""
+
+STEPS = 60
+"""Newton steps at most: some five are needed near a regular extreme, more at a limit or on a flat one."""
+
+FLAT = 1e-9
+"""Least curvature [size²/rad²] that a step goes by: a flat direction, along which only rounding has a slope, is not
+followed far."""
+
+STILL = 1e-14
+"""A slope [size/rad] that is rounding."""
+
+NOTHING = 1e-15
+"""An amplitude [size²] of A cos θ + B sin θ that is rounding: the angle stays what it is."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Goals:
+    """m functions f, in the arm's size: g (m, 3), w (m,), and c (3,)."""
+
+    g: Array
+    w: Array
+    c: Array
+
+    def values(self, p: Array) -> Array:
+        """The functions at p: (m, 3)."""
+        away = p - self.c
+        f: Array = np.sum(self.g * p, axis=1) + 0.5 * self.w * np.sum(away * away, axis=1)
+        return f
+
+    def slopes(self, p: Array) -> Array:
+        """Their gradients (m, 3) at p: (m, 3)."""
+        return self.g + self.w[:, None] * (p - self.c)
+
+    def taken(self, rows: NDArray[np.intp]) -> _Goals:
+        return _Goals(self.g[rows], self.w[rows], self.c)
+
+
+@dataclass(frozen=True, eq=False)
+class _Box:
+    """The joints that move the origin, lengths in the arm's size: low, high, full (n,)."""
+
+    chain: Chain
+    low: Array
+    high: Array
+    full: NDArray[np.bool_]
+
+
+def extent(space: Space, seed: int = 0) -> Extent:
+    """The bounds of the reachable set along the world's axes, its least and greatest distance from the base's origin.
+
+    Each is the best of several local extremes, found to 1e-12 of the arm's size; that a better one is far from
+    every start is not proven, only unlikely. Joints that do not move the origin are in the middle of their range.
+    """
+    origin = space.robot.base[:3, 3].copy()
+    q = np.tile(0.5 * (space.low + space.high), (8, 1))
+    if space.moving:
+        q[:, list(space.moving)] = _best(space, origin / space.size, seed)
+    p = positions(space, q.T).T
+    distances = np.linalg.norm(p - origin, axis=1)
+    return Extent(
+        low=p[[0, 1, 2], [0, 1, 2]],
+        high=p[[3, 4, 5], [0, 1, 2]],
+        least=float(distances[6]),
+        greatest=float(distances[7]),
+        origin=origin,
+        q_low=q[:3],
+        q_high=q[3:6],
+        q_least=q[6],
+        q_greatest=q[7],
+    )
+
+
+def _best(space: Space, origin: Array, seed: int) -> Array:
+    """The best values (8, n) [rad | m] of the moving joints for low and high, least and greatest; origin in sizes."""
+    eight = _Goals(np.concatenate([np.eye(3), -np.eye(3), np.zeros((2, 3))]), np.array([0.0] * 6 + [1.0, -1.0]), origin)
+    box = _scaled(space)
+    unit = np.where(box.chain.revolute, 1.0, space.size)
+
+    samples = joint_values(space, "sobol", seed, 0, SAMPLES, SAMPLES)
+    p = positions(space, samples).T / space.size
+    starts = []
+    for k in range(8):
+        f = eight.taken(np.full(SAMPLES, k)).values(p)
+        starts.append(np.argmin(f.reshape(-1, STARTS), axis=0) * STARTS + np.arange(STARTS))
+    q = samples.T[np.concatenate(starts)][:, list(space.moving)] / unit
+    goals = eight.taken(np.repeat(np.arange(8), STARTS))
+
+    for _ in range(SWEEPS):
+        f = _sweep(box, goals, q)
+    order = np.argsort(f.reshape(8, STARTS), axis=1, kind="stable")[:, :POLISHED]
+    chosen = (order + STARTS * np.arange(8)[:, None]).ravel()
+    q, goals = q[chosen], goals.taken(chosen)
+    f = _polish(box, goals, q)
+    best: Array = q[np.argmin(f.reshape(8, POLISHED), axis=1) + POLISHED * np.arange(8)] * unit
+    low, high, full = (whole[list(space.moving)] for whole in (space.low, space.high, space.full))
+    return np.where(full, low + np.mod(best - low, TURN), np.clip(best, low, high))
+
+
+def _scaled(space: Space) -> _Box:
+    """The moving joints with lengths in the arm's size."""
+    chain, moving = moving_chain(space), list(space.moving)
+    constants = chain.constants.copy()
+    constants[:, :3, 3] /= space.size
+    unit = np.where(chain.revolute, 1.0, space.size)
+    scaled = Chain(constants, chain.revolute, chain.offsets / unit)
+    return _Box(scaled, space.low[moving] / unit, space.high[moving] / unit, space.full[moving])
+
+
+def _sweep(box: _Box, goals: _Goals, q: Array) -> Array:
+    """Give each joint in turn its best value, in place, in q: (m, n); the functions' values (m,) before the sweep."""
+    chain = box.chain
+    # What follows each joint, at the values it will have when the joint's turn comes.
+    after = np.empty((chain.n + 1, len(q), 3))
+    after[chain.n] = chain.constants[chain.n, :3, 3]
+    for i in range(chain.n - 1, -1, -1):
+        C = chain.constants[i]
+        after[i] = _moved(chain, i, q[:, i], after[i + 1]) @ C[:3, :3].T + C[:3, 3]
+    R, o = np.broadcast_to(chain.constants[0, :3, :3], (len(q), 3, 3)), chain.constants[0, :3, 3][None]
+    for i in range(chain.n):
+        s = after[i + 1]
+        h = np.einsum("mji,mj->mi", R, goals.slopes(o))
+        q[:, i] = _best_angle(box, i, q[:, i], h, s) if chain.revolute[i] else _best_length(box, i, goals.w, h, s)
+        C = chain.constants[i + 1]
+        o = o + np.einsum("mij,mj->mi", R, _moved(chain, i, q[:, i], C[:3, 3]))
+        R = R @ _moved(chain, i, q[:, i], C[:3, :3].T, turn=True).swapaxes(1, 2)
+    return goals.values(after[0])
+
+
+def _moved(chain: Chain, i: int, values: Array, vectors: Array, turn: bool = False) -> Array:
+    """J_i(values (m,)) of points (m, 3) or (3,); with `turn`, of the three directions (3, 3) in rows: (m, 3, 3)."""
+    v = np.broadcast_to(vectors, (len(values), 3, 3) if turn else (len(values), 3)).copy()
+    values = (values + chain.offsets[i]).reshape(-1, *(1,) * turn)
+    if not chain.revolute[i]:
+        if not turn:
+            v[..., 2] += values
+        return v
+    c, s = np.cos(values), np.sin(values)
+    x, y = v[..., 0].copy(), v[..., 1].copy()
+    v[..., 0] = c * x - s * y
+    v[..., 1] = s * x + c * y
+    return v
+
+
+def _best_angle(box: _Box, i: int, now: Array, h: Array, s: Array) -> Array:
+    """The value (m,) of joint i, now (m,), that makes h · Rot(z, θ) s least."""
+    A = h[:, 0] * s[:, 0] + h[:, 1] * s[:, 1]
+    B = h[:, 1] * s[:, 0] - h[:, 0] * s[:, 1]
+    low, high, offset = box.low[i], box.high[i], box.chain.offsets[i]
+    best = low + np.mod(np.arctan2(-B, -A) - offset - low, TURN)
+    if not box.full[i]:
+        at_low, at_high = (A * np.cos(end + offset) + B * np.sin(end + offset) for end in (low, high))
+        best = np.where(best <= high, best, np.where(at_low <= at_high, low, high))
+    return np.where(np.hypot(A, B) > NOTHING, best, now)
+
+
+def _best_length(box: _Box, i: int, w: Array, h: Array, s: Array) -> Array:
+    """The value (m,) of joint i that makes a d + w d²/2 least, d with its offset."""
+    low, high, offset = box.low[i], box.high[i], box.chain.offsets[i]
+    a = h[:, 2] + w * s[:, 2]
+    at_low, at_high = (a * (end + offset) + 0.5 * w * (end + offset) ** 2 for end in (low, high))
+    best: Array = np.where(w > 0, np.clip(-a - offset, low, high), np.where(at_low <= at_high, low, high))
+    return best
+
+
+def _polish(box: _Box, goals: _Goals, q: Array) -> Array:
+    """Newton's method, in place, on q: (m, n); the functions' values (m,) at its end."""
+    p, gradient, H = _derivatives(box.chain, goals, q)
+    f = goals.values(p)
+    radius = np.full(len(q), 0.5)
+    for _ in range(STEPS):
+        held = ~box.full & (((q <= box.low) & (gradient > 0)) | ((q >= box.high) & (gradient < 0)))
+        gradient = np.where(held, 0.0, gradient)
+        going = (np.max(np.abs(gradient), axis=1) > STILL) & (radius > STILL)
+        if not np.any(going):
+            break
+        H = np.where(held[:, :, None] | held[:, None, :], np.eye(q.shape[1]), H)
+        curvatures, V = np.linalg.eigh(H)
+        along = np.einsum("mji,mj->mi", V, gradient) / np.maximum(np.abs(curvatures), FLAT)
+        step = -np.einsum("mij,mj->mi", V, along)
+        step[held] = 0.0
+        length = np.linalg.norm(step, axis=1)
+        step *= np.minimum(1.0, radius / np.maximum(length, 1e-300))[:, None]
+        q_new = _inside(box, q, step)
+        p, gradient_new, H_new = _derivatives(box.chain, goals, q_new)
+        f_new = goals.values(p)
+        better = going & (f_new < f)
+        length = np.minimum(length, radius)
+        radius = np.where(better, np.minimum(2.0 * np.maximum(radius, length), 1.0), 0.25 * length)
+        q[better], f[better] = q_new[better], f_new[better]
+        gradient = np.where(better[:, None], gradient_new, gradient)
+        H = np.where(better[:, None, None], H_new, H)
+    return f
+
+
+def _inside(box: _Box, q: Array, step: Array) -> Array:
+    """q + step as far as the first limit on the way."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        to_limit = np.where(step < 0, box.low - q, box.high - q) / step
+    to_limit = np.where(box.full | (step == 0.0), np.inf, np.maximum(to_limit, 0.0))
+    share = np.minimum(np.min(to_limit, axis=1, keepdims=True), 1.0)
+    moved = q + share * step
+    # Whoever gets to a limit is exactly there.
+    limit = np.where(step < 0, box.low, box.high)
+    moved = np.where(to_limit <= share, limit, moved)
+    return np.where(box.full, moved, np.clip(moved, box.low, box.high))
+
+
+def _derivatives(chain: Chain, goals: _Goals, q: Array) -> tuple[Array, Array, Array]:
+    """p (m, 3), and the functions' gradients (m, n) and Hessians (m, n, n) at q: (m, n)."""
+    F = joint_frames_of(chain, q)
+    z, o, p = F[:, :-1, :3, 2], F[:, :-1, :3, 3], F[:, -1, :3, 3]
+    turns = chain.revolute[:, None]
+    J = np.where(turns, np.cross(z, p[:, None] - o), z)
+    slope = goals.slopes(p)
+    gradient = np.einsum("mik,mk->mi", J, slope)
+    bent = np.where(turns, np.cross(slope[:, None], z), 0.0)
+    second = np.triu(bent @ J.swapaxes(1, 2))
+    second = second + np.triu(second, 1).swapaxes(1, 2)
+    return p, gradient, second + goals.w[:, None, None] * (J @ J.swapaxes(1, 2))

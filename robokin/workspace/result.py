@@ -1,0 +1,96 @@
+"""What is known of a workspace: frozen values, each size with the bound of its error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.workspace.space import Space
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A length [m], area [m²] or volume [m³] of a set.
+
+    The true value lies within value ± error (with 99 % confidence where points are drawn at random); `method`
+    says in words how it was found, `evaluations` how many points or configurations were looked at. `exact` says
+    that the error is that of a random estimate only, with no systematic part that is unknown.
+    """
+
+    value: float
+    error: float
+    method: str
+    evaluations: int
+    exact: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Extent:
+    """How far the tool's origin comes: low, high (3,) along the world's axes [m]; least and greatest distance [m]
+    from `origin` (3,), the base's. q_low, q_high (3, n) and q_least, q_greatest (n,) are where [rad | m]."""
+
+    low: Array
+    high: Array
+    least: float
+    greatest: float
+    origin: Array
+    q_low: Array
+    q_high: Array
+    q_least: Array
+    q_greatest: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Dexterity:
+    """How freely the tool can be turned, place by place.
+
+    group: what an orientation means for this arm: "SO(2)" (turns about one axis), "S2" (directions of the
+    tool's z axis) or "SO(3)"; "finite", where the position leaves only finitely many, or "curve", where it leaves
+    infinitely many but too few for a grid of all: then there is no map. orientations: how many the size of `every`
+    was found with, `spacing` [rad] apart, and `tried` how many of a coarser grid the map was. points: (c, 3) [m] the
+    places (centres of the cells where some were reached); cell: their side [m]; fraction: (c,) of the orientations
+    that can be reached; section: whether points lie in the half
+    plane y = 0 of the arm's axis, the rest following by symmetry. mean: the fraction's mean over the reachable set.
+    some, several, every: the sizes of the sets with some orientation (the reachable set), with more than one (the
+    lecture's dextrous set) and with every one on the grid (the standard dextrous set).
+    """
+
+    group: str
+    orientations: int
+    spacing: float
+    points: Array
+    cell: float
+    fraction: Array
+    section: bool
+    mean: float
+    some: Measure
+    several: Measure
+    every: Measure
+    tried: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """What a robot can reach.
+
+    space: its joints' box and the set's dimension; samples, seed, sampling: what the answers were made from.
+    structural_length [m]: Σ (|a| + |d|) over the links plus the strokes of the sliding joints. length_index:
+    that length over the cube root of the volume; volume_index: the volume as a part of the sphere of that
+    radius; both None unless the set has a volume.
+    """
+
+    space: Space
+    samples: int
+    seed: int
+    sampling: str
+    extent: Extent
+    measure: Measure
+    structural_length: float
+    length_index: float | None
+    volume_index: float | None
+    dexterity: Dexterity | None = None
+    notes: tuple[str, ...] = field(default=())

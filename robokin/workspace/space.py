@@ -1,0 +1,100 @@
+"""What of a robot moves its tool's origin, over which joint values, and what kind of set that makes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.errors import InputError
+from robokin.inverse.loop import chain_size
+from robokin.inverse.padding import joint_frames_of
+from robokin.kinematics.chain import Chain, chain_of
+from robokin.model import Robot
+
+Array = NDArray[np.float64]
+
+TURN = 2.0 * np.pi
+
+STILL = 1e-9
+"""A joint that moves the origin by less, as a part of the arm's size, does not move it."""
+
+RANK = 1e-6
+"""Singular values below this part of the greatest are zero: tables are printed to some five digits."""
+
+PROBES = 64
+"""Random configurations at which ranks and spans are looked at."""
+
+
+@dataclass(frozen=True, eq=False)
+class Space:
+    """A robot's joint box and what its image under the tool's origin is like.
+
+    low, high: (n,) the box [rad | m]; a revolute joint that can make a whole turn has just one, whose
+    `full` is True. moving: the joints (from 0) that move the tool's origin. dimension: of the reachable set.
+    basis: (3, dimension) orthonormal directions of the plane or line that holds a flat set, centre (3,) a
+    point of it [m]; None for a curved surface or curve. axis: (4, 4) a frame whose z axis the set is symmetric
+    about, since the first moving joint makes a whole turn about it; else None. size: the arm's size [m].
+    """
+
+    robot: Robot
+    chain: Chain
+    low: Array
+    high: Array
+    full: NDArray[np.bool_]
+    moving: tuple[int, ...]
+    dimension: int
+    basis: Array | None
+    centre: Array
+    axis: Array | None
+    size: float
+
+    @property
+    def quantity(self) -> str:
+        """What the size of the reachable set is called."""
+        return ("point", "length", "area", "volume")[self.dimension]
+
+
+def space_of(robot: Robot) -> Space:
+    """The space of a robot. Raises InputError that names the sliding joints without limits."""
+    if not robot.n:
+        raise InputError(f"{robot.name} has no joints, expected a robot that can move")
+    low, high, full = joint_box(robot)
+    chain = chain_of(robot)
+    size = chain_size(chain) + float(np.sum(np.where(robot.revolute, 0.0, np.abs(low) + np.abs(high))))
+    # Values of no meaning: whatever holds at all of them holds everywhere.
+    q = low + (high - low) * np.random.default_rng(11).random((PROBES, robot.n))
+    F = joint_frames_of(chain, q)
+    z, o, p = F[:, :-1, :3, 2], F[:, :-1, :3, 3], F[:, -1, None, :3, 3]
+    turns = robot.revolute[:, None]
+    J = np.where(turns, np.cross(z, p - o), z * size)
+    moving = tuple(int(i) for i in np.flatnonzero(np.max(np.linalg.norm(J, axis=2), axis=0) > STILL * size))
+    if not moving:
+        return Space(robot, chain, low, high, full, (), 0, np.zeros((3, 0)), p[0, 0], None, size)
+    values = np.linalg.svd(J, compute_uv=False)
+    dimension = int(np.max(np.sum(values > RANK * values[:, :1], axis=1)))
+    points = p[:, 0]
+    _, spread, directions = np.linalg.svd(points - points[0])
+    flat = dimension == 3 or bool(np.all(spread[dimension:] <= RANK * spread[0]))
+    basis = np.eye(3) if dimension == 3 else directions[:dimension].T if flat else None
+    first = moving[0]
+    axis = F[0, first].copy() if robot.revolute[first] and full[first] and first == 0 else None
+    return Space(robot, chain, low, high, full, moving, dimension, basis, points[0].copy(), axis, size)
+
+
+def joint_box(robot: Robot) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """low, high (n,) [rad | m] and which revolute joints make a whole turn. Raises InputError."""
+    low, high = robot.limits[:, 0].copy(), robot.limits[:, 1].copy()
+    endless = ~robot.revolute & ~(np.isfinite(low) & np.isfinite(high))
+    if np.any(endless):
+        names = ", ".join(str(i + 1) for i in np.flatnonzero(endless))
+        joints = f"joint {names} slides" if np.sum(endless) == 1 else f"joints {names} slide"
+        raise InputError(f"{joints} without limits, expected limits in the description: the workspace has no bound")
+    full = robot.revolute & ~(high - low < TURN * (1.0 - 1e-12))
+    # One whole turn about the middle of the limits; half a turn each way where there is none.
+    with np.errstate(invalid="ignore"):
+        middle = np.where(np.isfinite(low) & np.isfinite(high), 0.5 * (low + high), 0.0)
+    middle = np.where(np.isfinite(low) & ~np.isfinite(high), low + np.pi, middle)
+    middle = np.where(~np.isfinite(low) & np.isfinite(high), high - np.pi, middle)
+    return np.where(full, middle - np.pi, low), np.where(full, middle + np.pi, high), full

@@ -1,0 +1,120 @@
+"""Sampled configurations kept by where they put the tool's origin: a start near any point that is asked about.
+
+The first moving joint only turns or shifts all that follows. So what is kept is where the others put the
+origin seen from it: distance from its axis and height along it, or the plane across its slide. That makes a
+thin set of samples a dense one, and the value of the first joint follows from the point.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.workspace.placing import Placing
+from robokin.workspace.sequence import unit_points
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+KEPT = 1 << 15
+"""Sampled configurations."""
+
+SIDE = 48
+"""Cells along the longer side of the table: some ten samples in each."""
+
+BEYOND = 0.15
+"""Part of its range by which a joint's sample may pass each limit, to be put back to it: much of a set's boundary
+is reached with joints at their limits, which samples of the inside never are."""
+
+LOOKED_AT = 12
+"""Samples of a cell among which the best is chosen."""
+
+TURN = 2.0 * np.pi
+
+
+class Starts:
+    """A table of configurations by cells of what the first joint leaves alone."""
+
+    def __init__(self, placing: Placing, low: Array, high: Array, full: NDArray[np.bool_], size: float) -> None:
+        self.turns = bool(placing.revolute[0])
+        self.low, self.high, self.full, self.size = low, high, full, size
+        n = len(low)
+        u = unit_points("sobol", n, 0, 0, KEPT, KEPT)
+        # Every other sample may come to lie on limits.
+        u[:, ::2] = np.clip((1.0 + 2.0 * BEYOND) * u[:, ::2] - BEYOND, 0.0, 1.0)
+        q = low[:, None] + (high - low)[:, None] * u
+        q[0] = 0.5 * (low[0] + high[0])
+        p, _ = placing.placed(q)
+        # The first axis is the same at every configuration.
+        self.foot, self.frame = _axis(placing)
+        seen, value = self._seen(p)
+        self.offset = value - q[0]
+        self.q, self.seen = q, seen
+        self.corner = seen.min(axis=1)
+        spread = float(np.max(seen.max(axis=1) - self.corner)) or 1.0
+        self.step = spread / SIDE * (1.0 + 1e-9)
+        self.shape = np.maximum(np.ceil((seen.max(axis=1) - self.corner) / self.step), 1).astype(np.intp)
+        cells = self._cell(seen)
+        self.order = np.argsort(cells, kind="stable")
+        count = np.bincount(cells, minlength=int(np.prod(self.shape)))
+        first = np.cumsum(count) - count
+        nearest = _nearest_occupied(count.reshape(self.shape) > 0).reshape(-1)
+        self.first, self.count = first[nearest], count[nearest]
+
+    def near(self, points: Array, near: int, far: int) -> Array:
+        """Starts (near + far, n, m) for points (3, m) [m]: some from the point's cell, the most promising first, and
+        some from anywhere, so that not all stand before the same barrier."""
+        seen, value = self._seen(points)
+        cells = self._cell(seen)
+        first, kept = self.first[cells], self.count[cells]
+        picked = self.order[first + np.arange(LOOKED_AT)[:, None] % kept]
+        off = np.sum((self.seen[:, picked] - seen[:, None, :]) ** 2, axis=0)
+        lacking = self._within(value - self.offset[picked])[1]
+        off += (lacking * (seen[0] if self.turns else 1.0)) ** 2
+        rank = np.argsort(off, axis=0, kind="stable")[:near]
+        # Which of all is for a point to decide, so that its answer does not depend on the others asked about.
+        scattered = (np.arange(1, far + 1)[:, None] * 0.6180339887498949 + np.sum(seen, axis=0) / self.step) % 1.0
+        anywhere = (scattered * len(self.order)).astype(np.intp)
+        chosen = np.concatenate([np.take_along_axis(picked, rank, axis=0), anywhere])
+        starts = self.q[:, chosen].transpose(1, 0, 2).copy()
+        starts[:, 0] = self._within(value - self.offset[chosen])[0]
+        return starts
+
+    def _within(self, joint: Array) -> tuple[Array, Array]:
+        """Values of the first joint brought into its limits, and how far outside they were."""
+        low, high = self.low[0], self.high[0]
+        if self.turns:
+            middle = 0.5 * (low + high)
+            joint = joint - TURN * np.round((joint - middle) / TURN)
+        inside = np.clip(joint, low, high)
+        return inside, np.abs(joint - inside)
+
+    def _seen(self, p: Array) -> tuple[Array, Array]:
+        """What the first joint leaves alone of points (3, m), (2, m) [m], and what it changes, (m,) [rad | m]."""
+        x, y, z = self.frame.T @ (p - self.foot[:, None])
+        if self.turns:
+            return np.stack([np.hypot(x, y), z]), np.arctan2(y, x)
+        return np.stack([x, y]), z
+
+    def _cell(self, seen: Array) -> Index:
+        i, j = ((seen - self.corner[:, None]) / self.step).astype(np.intp)
+        cells: Index = np.clip(i, 0, self.shape[0] - 1) * self.shape[1] + np.clip(j, 0, self.shape[1] - 1)
+        return cells
+
+
+def _axis(placing: Placing) -> tuple[Array, Array]:
+    """A point of the first joint's axis (3,) and a frame (3, 3) whose z it is; the base and nothing else moves it."""
+    constant = placing.constants[0]
+    return constant[:3, 3], constant[:3, :3]
+
+
+def _nearest_occupied(occupied: NDArray[np.bool_]) -> Index:
+    """For each cell of a table the number of an occupied cell near it, its own if it is occupied."""
+    rows, columns = occupied.shape
+    number = np.where(occupied, np.arange(rows * columns).reshape(rows, columns), -1)
+    while np.any(number < 0):
+        padded = np.pad(number, 1, constant_values=-1)
+        for di, dj in ((0, 1), (1, 0), (1, 2), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2)):
+            beside = padded[di : di + rows, dj : dj + columns]
+            number = np.where(number < 0, beside, number)
+    return number

@@ -1,0 +1,148 @@
+"""The size of a set from its membership alone: analytic sets, honest bounds, scaling, one answer on any cores."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from robokin.workspace.cells import cells_of, poisson_limit, set_measure
+from robokin.workspace.region import Region
+
+Array = NDArray[np.float64]
+Oracle = Callable[[Array], NDArray[np.bool_]]
+
+E = np.eye(3)
+ORIGIN = np.zeros(3)
+LINE = Region("line", np.array([-2.0]), np.array([1.9]), ORIGIN, E[:, :1])
+PLANE = Region("plane", np.array([-1.3, -1.2]), np.array([1.2, 1.25]), ORIGIN, E[:, :2])
+UNIT = Region("plane", np.zeros(2), np.ones(2), ORIGIN, E[:, :2])
+BOX = Region("box", np.full(3, -1.1), np.full(3, 1.1), ORIGIN, E)
+DISC = Region("disc", np.zeros(1), np.array([1.7]), ORIGIN, E[:, :1])
+SECTION = Region("section", np.array([0.0, -1.1]), np.array([1.15, 1.1]), ORIGIN, E[:, [0, 2]])
+
+
+def length(p: Array) -> Array:
+    return np.asarray(np.linalg.norm(p, axis=1))
+
+
+def ball(p: Array) -> NDArray[np.bool_]:
+    return np.asarray(length(p) < 1.0)
+
+
+def shell(p: Array) -> NDArray[np.bool_]:
+    return np.asarray((length(p) < 1.0) & (length(p) > 0.3))
+
+
+def ring(p: Array) -> NDArray[np.bool_]:
+    return np.asarray((length(p) < 1.0) & (np.hypot(p[:, 0], p[:, 1]) > 0.3))
+
+
+def slabs(p: Array) -> NDArray[np.bool_]:
+    """Twenty slabs of a two-hundredth each."""
+    return np.asarray((20.0 * p[:, 0]) % 1.0 < 0.1)
+
+
+def dust(p: Array) -> NDArray[np.bool_]:
+    """Features far smaller than the first cells."""
+    return np.asarray(((100.0 * p[:, 0]) % 1.0 < 0.1) & (p[:, 1] > 0.8))
+
+
+def brick(p: Array) -> NDArray[np.bool_]:
+    return np.asarray(np.all((p > [-0.31, -0.7, -0.2]) & (p < [0.9, 0.1, 0.77]), axis=1))
+
+
+SHELL = 4.0 / 3.0 * np.pi * (1.0 - 0.3**3)
+# A ball without a cylinder through its middle: 4/3 π (R² - r²)^(3/2), the napkin ring.
+RING = 4.0 / 3.0 * np.pi * 0.91**1.5
+CASES = {
+    "interval": (ball, LINE, 2.0),
+    "two intervals": (shell, LINE, 1.4),
+    "annulus by its radius": (shell, DISC, np.pi * 0.91),
+    "disc": (ball, PLANE, np.pi),
+    "annulus": (shell, PLANE, np.pi * 0.91),
+    "slabs": (slabs, UNIT, 0.1),
+    "dust": (dust, UNIT, 0.02),
+    "shell": (shell, BOX, SHELL),
+    "brick": (brick, BOX, 1.21 * 0.8 * 0.97),
+    "shell by its section": (shell, SECTION, SHELL),
+    "ring by its section": (ring, SECTION, RING),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_truth_is_within_the_bound(name: str) -> None:
+    inside, region, truth = CASES[name]
+    measures = [set_measure(inside, region, 6000, seed) for seed in range(40)]
+    honest = [abs(found.value - truth) <= found.error for found in measures]
+    assert np.mean(honest) >= 0.95
+    assert all(found.evaluations <= 6000 for found in measures)
+
+
+@pytest.mark.parametrize("name", ["slabs", "dust", "shell"])
+def test_there_is_no_bias(name: str) -> None:
+    inside, region, truth = CASES[name]
+    values = np.array([set_measure(inside, region, 3000, seed).value for seed in range(80)])
+    assert abs(np.mean(values) - truth) <= 4.0 * np.std(values) / np.sqrt(len(values))
+
+
+@pytest.mark.parametrize(("name", "most"), [("disc", 1e-3), ("shell by its section", 1e-3), ("shell", 5e-3)])
+def test_the_bound_is_small_at_the_usual_budget(name: str, most: float) -> None:
+    inside, region, truth = CASES[name]
+    found = set_measure(inside, region, 131072)
+    assert abs(found.value - truth) <= found.error <= most * truth
+
+
+def test_nothing_and_everything() -> None:
+    nothing = set_measure(lambda p: np.zeros(len(p), dtype=bool), BOX, 4000)
+    assert nothing.value == 0.0
+    everything = set_measure(lambda p: np.ones(len(p), dtype=bool), BOX, 4000)
+    assert abs(everything.value - 2.2**3) <= everything.error
+
+
+def test_a_larger_set_is_larger_by_the_power() -> None:
+    bigger = replace(PLANE, low=3.0 * PLANE.low, high=3.0 * PLANE.high)
+    small, large = set_measure(shell, PLANE, 5000), set_measure(lambda p: shell(p / 3.0), bigger, 5000)
+    assert large.value == pytest.approx(9.0 * small.value, rel=1e-12)
+    assert large.error == pytest.approx(9.0 * small.error, rel=1e-12)
+
+
+def test_a_moved_and_turned_set_is_as_large() -> None:
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+    moved = replace(SECTION, origin=np.array([5.0, -2.0, 1.0]), directions=turn @ SECTION.directions)
+    there = set_measure(lambda p: ring((p - moved.origin) @ turn), moved, 5000)
+    here = set_measure(ring, SECTION, 5000)
+    assert there.value == pytest.approx(here.value, rel=1e-9)
+
+
+def test_one_answer_on_any_number_of_cores() -> None:
+    assert set_measure(shell, PLANE, 20000, 5, cores=1) == set_measure(shell, PLANE, 20000, 5, cores=2)
+    assert set_measure(shell, PLANE, 20000, 5) != set_measure(shell, PLANE, 20000, 6)
+
+
+def test_cells_fill_the_region_and_show_the_set() -> None:
+    found, cells = cells_of(ring, SECTION, 20000)
+    sizes = SECTION.sizes(cells.low, cells.high)
+    assert np.sum(sizes) == pytest.approx(np.pi * 1.15**2 * 2.2)
+    assert float(sizes @ cells.fraction) + cells.missed == pytest.approx(found.value)
+    middle = SECTION.points(0.5 * (cells.low + cells.high))[cells.settled]
+    assert np.mean(ring(middle) == (cells.fraction[cells.settled] == 1.0)) > 0.99
+
+
+def test_a_proof_corrects_what_a_near_oracle_settles() -> None:
+    rough = lambda p: length(p) < 1.0  # noqa: E731 - it does not see the hole
+    found, cells = cells_of(rough, PLANE, 6000, proof=shell, tests=6000)
+    assert cells.missed < 0.0
+    assert abs(found.value - np.pi * 0.91) <= found.error
+
+
+def test_the_limit_of_a_poisson_mean() -> None:
+    # By definition: so many events or fewer have just that chance. None in 95 % is the rule of three.
+    assert poisson_limit(0, 0.05) == pytest.approx(2.9957, rel=1e-4)
+    for count, risk in ((0, 0.005), (3, 0.025), (20, 0.005), (400, 0.01)):
+        limit = poisson_limit(count, risk)
+        logs = np.append(0.0, np.cumsum(np.log(limit / np.arange(1, count + 1))))
+        assert np.sum(np.exp(logs - limit)) == pytest.approx(risk)
