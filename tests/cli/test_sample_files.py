@@ -357,7 +357,8 @@ def test_an_unknown_ending_is_refused(name):
 
 
 LONG = """
-import sys
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs are started without
 import robokin
 from robokin.cli import say
 from robokin.cli.sample_files import write_samples

@@ -140,7 +140,8 @@ def test_less_than_one_core_is_refused():
 
 
 INTERRUPTED = """
-import time
+import signal, time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs are started without
 from robokin.workspace.parallel import in_order
 
 def work(x):
