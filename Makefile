@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench wheel clean
+.PHONY: help demo test lint bench wheel docs clean
 
 help:            ## what can be made
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 12
@@ -30,6 +30,9 @@ bench: $(VENV)/installed ## speed, as ratios against peers and limits, in one ru
 
 wheel: $(VENV)/installed ## build the wheel and run it alone, outside this folder
 	PYTHON=$(BIN)/python tests/wheel.sh
+
+docs: $(VENV)/installed ## rerun every command of README.md and docs/, and write what it prints now
+	$(BIN)/python tests/documentation.py
 
 clean:           ## remove the environment and what was built
 	rm -rf $(VENV) dist build

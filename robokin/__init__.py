@@ -18,10 +18,14 @@ if TYPE_CHECKING:
     from robokin.errors import DescriptionError as DescriptionError
     from robokin.errors import InputError as InputError
     from robokin.errors import RobokinError as RobokinError
+    from robokin.inverse.path import follow_line as follow_line
+    from robokin.inverse.path import interpolate_joints as interpolate_joints
     from robokin.inverse.solve import solve_ik as solve_ik
     from robokin.kinematics.forward import forward_kinematics as forward_kinematics
     from robokin.kinematics.forward import link_frames as link_frames
     from robokin.kinematics.jacobian import jacobian as jacobian
+    from robokin.kinematics.singular import singular_configurations as singular_configurations
+    from robokin.kinematics.velocity import differential_kinematics as differential_kinematics
     from robokin.mobility.verdict import mobility_of as mobility_of
     from robokin.mobility.wheeled import manoeuvrability_of as manoeuvrability_of
     from robokin.model import Mechanism as Mechanism
@@ -43,6 +47,10 @@ _HOMES = {
     "link_frames": "robokin.kinematics.forward",
     "solve_ik": "robokin.inverse.solve",
     "jacobian": "robokin.kinematics.jacobian",
+    "differential_kinematics": "robokin.kinematics.velocity",
+    "singular_configurations": "robokin.kinematics.singular",
+    "follow_line": "robokin.inverse.path",
+    "interpolate_joints": "robokin.inverse.path",
     "mobility_of": "robokin.mobility.verdict",
     "manoeuvrability_of": "robokin.mobility.wheeled",
     "Mechanism": "robokin.model",

@@ -13,13 +13,16 @@ import robokin
 
 PACKAGE = Path(robokin.__file__).parent
 ORDER = [
-    "errors", "units", "spatial", "model", "kinematics", "symbolic", "description", "inverse", "workspace", "mobility",
-    "pictures", "cli",
+    "errors", "units", "spatial", "model", "kinematics", "symbolic", "description", "inverse", "lessons", "workspace",
+    "mobility", "grading", "pictures", "cli",
 ]  # fmt: skip
 """Each room imports only rooms before it. description (text to model) also needs the Denavit-Hartenberg
 matrices; what calculates must not need description, which `CALCULATING` says."""
 
-CALCULATING = ["errors", "units", "spatial", "model", "kinematics", "symbolic", "inverse", "workspace", "mobility"]
+CALCULATING = [
+    "errors", "units", "spatial", "model", "kinematics", "symbolic", "inverse", "lessons", "workspace", "mobility",
+    "grading",
+]  # fmt: skip
 HOMES = {"yaml": "description", "typer": "cli", "rich": "cli/output", "matplotlib": "pictures"}
 
 

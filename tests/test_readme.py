@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
@@ -10,6 +9,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from documentation import in_a_shell, runs, same, steps
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
@@ -19,43 +19,16 @@ def blocks(language):
     return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
 
 
-def sessions():
-    """Commands with the output that follows them, of all console blocks."""
-    for block in blocks("console"):
-        command, shown = None, []
-        for line in [*block.splitlines(), "$ "]:
-            if line.startswith("$ "):
-                if command and not command.startswith("make "):
-                    yield command, "\n".join(shown).rstrip()
-                command, shown = line[2:], []
-            else:
-                shown.append(line)
+STEPS = [(step.command, step.shown) for step in steps(README) if runs(step.command)]
 
 
-def run(command, cwd):
-    """What a user sees of a command: both streams, as a shell shows them."""
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    environment = {**os.environ, "PATH": path, "COLUMNS": "80"}
-    done = subprocess.run(
-        ["sh", "-c", command], cwd=cwd, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-    )
-    return done.stdout.rstrip()
-
-
-NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?")
-
-
-def assert_same(printed, shown):
-    """The same text, its numbers to 1e-9: the last digit of a sine is the processor's own."""
-    assert NUMBER.sub("#", printed) == NUMBER.sub("#", shown)
-    numbers = [[float(text) for text in NUMBER.findall(part)] for part in (printed, shown)]
-    assert numbers[0] == pytest.approx(numbers[1], rel=1e-9, abs=1e-9)
-
-
-@pytest.mark.parametrize(("command", "shown"), list(sessions()), ids=lambda text: text[:40])
-def test_commands_print_what_is_shown(command, shown, tmp_path):
+@pytest.mark.parametrize(("command", "shown"), STEPS, ids=lambda text: text[:40])
+def test_commands_print_what_is_shown(command, shown, tmp_path, monkeypatch):
+    """In processes of their own, joined by real pipes."""
     assert shown, "a command in the README without its output"
-    assert_same(run(command, tmp_path), shown)
+    monkeypatch.chdir(tmp_path)
+    printed = in_a_shell(command).decode().rstrip()
+    assert same(printed, shown), printed
 
 
 def test_the_robot_of_the_readme_works(tmp_path):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,9 @@ from robokin.inverse.verify import CLOSES
 from robokin.model import Robot
 from robokin.units import Units
 
+if TYPE_CHECKING:
+    from robokin.cli.explanations import Explanation
+
 Array = NDArray[np.float64]
 
 
@@ -27,7 +30,7 @@ class Answers:
     """Answers to bytes, and how many targets had none.
 
     `tolerances` [m, rad]: within them the nearest pose will do; None asks for exact ones. `arguments` go to
-    the solver; `alone` tells that one target was asked for, by an option.
+    the solver; `alone` tells that one target was asked for, by an option; `explain` that its lesson is wanted.
     """
 
     robot: Robot
@@ -35,6 +38,7 @@ class Answers:
     tolerances: tuple[float | None, float | None]
     arguments: dict[str, Any]
     alone: bool
+    explain: bool = False
     count: int = 0
     unreached: int = 0
 
@@ -94,7 +98,7 @@ class Answers:
 
     def record(self, target: Array, result: Result) -> dict[str, Any]:
         """The JSON document of an answer."""
-        return {
+        record = {
             "robot": self.robot.id,
             "units": self.units.as_record(),
             "target": {"matrix": poses_in(target.copy(), self.units).tolist(), "task": self.task},
@@ -105,6 +109,17 @@ class Answers:
             "solutions": [self.solution(solution) for solution in result.solutions],
             "nearest": None if result.nearest is None else self.solution(result.nearest),
         }
+        if self.explain:
+            record["explanation"] = self.explanation(target, result).record()
+        return record
+
+    def explanation(self, target: Array, result: Result) -> Explanation:
+        """The lesson behind an answer."""
+        from robokin.cli.explanations import Explanation
+        from robokin.lessons.explain import explain_ik
+
+        asked = {name: self.arguments[name] for name in ("task", "limits", "near") if name in self.arguments}
+        return Explanation(self.robot, self.units, explain_ik(self.robot, target, **asked), result)
 
     def solution(self, solution: Solution) -> dict[str, Any]:
         """A solution in the units; at a singular one also the numbers of the joints that may trade motion."""
@@ -214,10 +229,12 @@ class Answers:
         drawn = AnswerTable(self.robot, self.units, self.task)
         shown = self.joints
         head = drawn.head()
-        for _, result in self.results(blocks):
+        for target, result in self.results(blocks):
             label = "" if self.alone else f"target {self.count}: "
             yield head + drawn.paragraph(label, result, [shown(solution.q) for solution in drawn.solutions(result)])
             head = b""
+            if self.explain:
+                yield self.explanation(target, result).page()
         yield head
 
 

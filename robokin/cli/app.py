@@ -22,8 +22,13 @@ COMMANDS = {
     "schema": "The format of descriptions as a JSON Schema.",
     "fk": "Forward kinematics: where is the hand?",
     "ik": "Inverse kinematics: every configuration that reaches a pose.",
+    "jacobian": "The Jacobian: how freely the tool moves at a configuration.",
+    "singular": "Where an arm loses a freedom: shoulder, elbow, wrist.",
+    "path": "From here to there, joint by joint or along a straight line.",
+    "plot": "A picture of an arm, still or turning with the mouse.",
     "workspace": "What an arm can reach, and how freely the tool can turn.",
     "dof": "How freely can it move? Grübler's count, and the truth.",
+    "check": "Mark answers: poses, joint values, tables, counts.",
     "frame": "Evaluate a transform expression.",
 }
 """Every command with its line in the overview; its module is `robokin.cli.commands.<name>_command`."""
@@ -102,7 +107,8 @@ class Commands(TyperGroup):
         """The command with a name."""
         if cmd_name in COMMANDS:
             module = import_module(f"robokin.cli.commands.{cmd_name}_command")
-            return build(cmd_name, module.command)
+            # A command that has commands of its own is a group.
+            return module.group() if hasattr(module, "group") else build(cmd_name, module.command)
         if ctx.resilient_parsing or cmd_name.startswith("-"):
             return None
         hint = did_you_mean(cmd_name, COMMANDS) or f", expected one of {', '.join(COMMANDS)}"

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.description.expressions import Scope, evaluate
+from robokin.description.expressions import Scope, evaluate, names_parameters
 from robokin.description.schema import Fields
-from robokin.description.transforms import evaluate_transform
+from robokin.description.transforms import evaluate_transform, position_texts
 from robokin.description.tree import Mapping, Mark, Node, Scalar, Sequence, describe
 from robokin.errors import DescriptionError, ExpressionError, did_you_mean, or_list, shown
 from robokin.spatial.rotations import ZERO_AXIS
@@ -147,6 +147,20 @@ def transform_of(node: Node, context: Context, what: str) -> Array:
         raise _located(node.mark, what, error) from None
     _check_size(float(np.max(np.abs(T))), node, what)
     return T
+
+
+def parameters_in(node: Node, context: Context) -> str:
+    """A number's text where it names parameters; "" where it does not. The number has been read before."""
+    if isinstance(node, Scalar) and names_parameters(node.text, context.scope):
+        return node.text
+    return ""
+
+
+def parameters_in_position(node: Node, context: Context) -> tuple[tuple[str, str], ...]:
+    """The coordinates of a transform that name parameters, `("z", "l1")`. The transform has been read before."""
+    if isinstance(node, Scalar) and not node.empty and names_parameters(node.text, context.scope):
+        return position_texts(node.text, context.scope, context.units)
+    return ()
 
 
 def names_of(node: Node, what: str) -> tuple[str, ...]:

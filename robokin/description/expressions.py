@@ -325,6 +325,11 @@ def evaluate(text: str, scope: Scope, *, angle: bool = False) -> Value:
     return value
 
 
+def names_parameters(text: str, scope: Scope) -> bool:
+    """Whether an expression that can be read names a parameter."""
+    return bool(scope.names) and any(token.text in scope.names for token in tokenize(text) if token.kind == "name")
+
+
 @dataclass
 class Parameters:
     """Named expressions that may refer to each other in any order; evaluated when asked for.

@@ -14,6 +14,8 @@ from robokin.description.cells import (
     fields_of,
     list_of,
     number_of,
+    parameters_in,
+    parameters_in_position,
     text_of,
     transform_of,
     vector_of,
@@ -29,6 +31,9 @@ Array = NDArray[np.float64]
 
 VARIABLE = {JointType.REVOLUTE: "theta", JointType.PRISMATIC: "d"}
 """The cell that the joint variable stands in."""
+
+NUMBERS = ("theta", "d", "a", "alpha", "offset")
+"""The cells of a row that hold one number."""
 
 ZERO = re.compile(r"[-+]?(0+\.?0*|\.0+)")
 """The ways to write a cell of a column that says nothing."""
@@ -53,6 +58,12 @@ def read_robot(fields: MappingType[str, Node], head: Head) -> Robot:
         base=transform_of(fields["base"], head.context, "base") if "base" in fields else np.eye(4),
         tool=transform_of(fields["tool"], head.context, "tool") if "tool" in fields else np.eye(4),
         poses=_poses(fields["poses"], joints, head.context) if "poses" in fields else {},
+        texts=tuple(
+            (f"{name} {axis}", text)
+            for name in ("base", "tool")
+            if name in fields
+            for axis, text in parameters_in_position(fields[name], head.context)
+        ),
     )
 
 
@@ -183,7 +194,16 @@ def _row(cells: MappingType[str, Node], mark: Mark, i: int, convention: str, con
         limits=limits,
         origin=origin,
         axis=axis,
+        texts=_texts(cells, context),
     )
+
+
+def _texts(cells: MappingType[str, Node], context: Context) -> tuple[tuple[str, str], ...]:
+    """The cells that name parameters, as they are written."""
+    if "origin" in cells:
+        return parameters_in_position(cells["origin"], context)
+    named = ((name, parameters_in(cells[name], context)) for name in NUMBERS if name in cells)
+    return tuple((name, text) for name, text in named if text)
 
 
 def _limits(node: Node, angle: bool, where: str, context: Context) -> tuple[float, float]:

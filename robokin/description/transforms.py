@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.description.expressions import MAX_NESTING, Parser, Scope
+from robokin.description.expressions import MAX_NESTING, Parser, Scope, names_parameters
 from robokin.errors import ExpressionError, did_you_mean, shown
 from robokin.kinematics.dh import modified_dh, standard_dh
 from robokin.spatial import (
@@ -63,7 +63,11 @@ Kind = Literal["length", "angle", "ratio"]
 
 @dataclass
 class Reader:
-    """Reads one transform expression; `notes` collects what the user should know of it."""
+    """Reads one transform expression; `notes` collects what the user should know of it.
+
+    `shifts` are its translations: a direction (3,) in the first frame and the text of how far, or "" where
+    the direction itself is the translation [m].
+    """
 
     text: str
     scope: Scope
@@ -72,6 +76,8 @@ class Reader:
 
     def __post_init__(self) -> None:
         self.parser = Parser(self.text, self.scope)
+        self.shifts: list[tuple[Array, str]] = []
+        self.arguments: list[str] = []
 
     def whole(self) -> Array:
         """The transform (4, 4) of the whole text [m]."""
@@ -93,7 +99,14 @@ class Reader:
         if parser.depth > MAX_NESTING:
             raise parser.error(f"found more than {MAX_NESTING} levels of nesting, expected a plain product of steps")
         while parser.token.kind == "name":
-            T = T @ self.step()
+            name = parser.token.text.lower()
+            step = self.step()
+            if parser.depth == 1:  # what is inside Inv(…) counts as a whole
+                if name == "trans":
+                    self.shifts += zip(T[:3, :3].T, self.arguments, strict=True)
+                else:
+                    self.shifts.append((T[:3, :3] @ step[:3, 3], ""))
+            T = T @ step
             if parser.token.text == "*":
                 parser.accept("*")
                 if parser.token.kind != "name":
@@ -126,12 +139,15 @@ class Reader:
     def _numbers(self, form: str, *kinds: Kind) -> list[float]:
         """As many numbers as kinds, separated by commas, in metres and radians."""
         values = []
+        self.arguments = []
         for i, kind in enumerate(kinds):
             if i and not self.parser.accept(","):
                 raise self.parser.error(
                     f"found {self.parser.found()} after {i} of {len(kinds)} arguments, expected {STEPS[form]}"
                 )
+            start = self.parser.token.position
             values.append(self._number(kind))
+            self.arguments.append(self.text[start : self.parser.token.position].strip())
         return values
 
     def _number(self, kind: Kind) -> float:
@@ -258,3 +274,28 @@ def evaluate_transform(text: str, scope: Scope, units: Units, notes: list[str] |
     """
     reader = Reader(text, scope, units, [] if notes is None else notes)
     return reader.whole()
+
+
+def position_texts(text: str, scope: Scope, units: Units) -> tuple[tuple[str, str], ...]:
+    """The coordinates of a transform's position that name parameters, as expressions in the file's units.
+
+    `Rot(z, 90) Trans(l1, 0, 2)` gives `(("y", "l1"),)`. Raises ExpressionError.
+    """
+    reader = Reader(text, scope, units)
+    reader.whole()
+    named = [(line, far, names_parameters(far, scope)) for line, far in reader.shifts]
+    found = []
+    for i, axis in enumerate("xyz"):
+        parts = [(part, names) for line, far, names in named if (part := _part(line[i], far, units))]
+        if any(names for _, names in parts):
+            found.append((axis, " + ".join(part for part, _ in parts)))
+    return tuple(found)
+
+
+def _part(direction: float, how_far: str, units: Units) -> str:
+    """A coordinate of a translation; "" for none."""
+    if abs(direction) < ROUNDING or (how_far and not how_far.strip("+-0. ")):
+        return ""
+    if not how_far:
+        return repr(float(direction / units.metres))
+    return how_far if direction == 1.0 else f"{float(direction)!r}*({how_far})"

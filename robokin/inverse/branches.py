@@ -65,7 +65,7 @@ def _wrist_centre(F: Array, wrist: str, n: int) -> Array:
 def _meeting(z0: Array, o0: Array, z1: Array, o1: Array) -> Array:
     """The point (s, 3) of the second line nearest to the first one."""
     normal = np.cross(z0, z1)
-    along = np.einsum("si,si->s", np.cross(o0 - o1, z0), normal) / np.einsum("si,si->s", normal, normal)
+    along = np.einsum("si,si->s", np.cross(o1 - o0, z0), normal) / np.einsum("si,si->s", normal, normal)
     return np.asarray(o1 + along[:, None] * z1)
 
 

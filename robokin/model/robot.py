@@ -43,6 +43,8 @@ class Joint:
     In a DH table the cells `theta`, `d`, `a`, `alpha` hold the constants of the row (`theta` of a
     revolute and `d` of a prismatic row are 0: the variable stands there, shifted by `offset`). In the
     `frames` convention the row is `origin` (4, 4), then the motion about or along `axis` (3,).
+    `texts` are the cells that name parameters, as they are written (`("a", "l1/2")`); of an origin the
+    coordinates `x`, `y`, `z`.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Joint:
     limits: tuple[float, float] = (-np.inf, np.inf)
     origin: Array | None = None
     axis: Array | None = None
+    texts: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -77,7 +80,8 @@ class Joint:
 class Robot:
     """A serial chain: T = base · row 1 · … · row m · tool, as the description gives it.
 
-    `rows` are all rows of the table, `joints` those with a variable, in the order of q.
+    `rows` are all rows of the table, `joints` those with a variable, in the order of q. `texts` are the
+    coordinates of base and tool that name parameters (`("tool z", "d6")`).
     """
 
     name: str
@@ -91,6 +95,7 @@ class Robot:
     base: Array = field(default_factory=lambda: np.eye(4))
     tool: Array = field(default_factory=lambda: np.eye(4))
     poses: Mapping[str, Array] = field(default_factory=dict)
+    texts: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         """Make every array and mapping read-only; refuse poses of the wrong length."""

@@ -33,12 +33,17 @@ def page(picture: Picture) -> bytes:
         "plates": [_plate(panel, scale) for panel in picture.panels],
         "cloud": None if picture.cloud is None else _cloud(picture.cloud, scale, picture.units.length),
     }
+    return filled("page.html", picture.title, data)
+
+
+def filled(template: str, title: str, data: dict[str, Any]) -> bytes:
+    """A page of this folder with its title and its data in their places."""
     # Inside a script element nothing may look like its end.
-    text = json.dumps(data, ensure_ascii=True, allow_nan=False).replace("<", "\\u003c")
-    template = resources.files("robokin.pictures").joinpath("page.html").read_text(encoding="utf-8")
-    before, _, rest = template.partition("@TITLE@")
+    text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    page = resources.files("robokin.pictures").joinpath(template).read_text(encoding="utf-8")
+    before, _, rest = page.partition("@TITLE@")
     middle, _, after = rest.partition("@DATA@")
-    return (before + html.escape(picture.title) + middle + text + after).encode(errors="backslashreplace")
+    return (before + html.escape(title) + middle + text + after).encode(errors="backslashreplace")
 
 
 def _plate(panel: Panel, scale: float) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from contextlib import contextmanager
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from robokin.errors import InputError
 from robokin.pictures.picture import Cloud, Degrees, Panel, Picture
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -69,19 +70,33 @@ def require_matplotlib(ending: str) -> None:
 
 def still(picture: Picture, kind: str) -> bytes:
     """The picture as a file of one of KINDS. Raises InputError where matplotlib is missing."""
+    with drawing(kind) as figure:
+        _draw(figure, picture)
+        return written(figure, kind)
+
+
+@contextmanager
+def drawing(kind: str) -> Iterator[Figure]:
+    """An empty figure in the house's style, whatever the user's own is. Raises InputError without matplotlib."""
     require_matplotlib(f".{kind}")
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    out = io.BytesIO()
     with mpl.rc_context():
         mpl.rcdefaults()
         mpl.rcParams.update(STYLE)
-        figure = Figure()
-        _draw(figure, picture)
-        # No date and no version: the same picture is the same file.
-        metadata = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}
-        figure.savefig(out, format=kind, dpi=RESOLUTION, metadata=metadata[kind], facecolor="white")
+        yield Figure()
+
+
+def written(figure: Figure, kind: str, *, tight: bool = False) -> bytes:
+    """A figure as a file of one of KINDS, with no date and no version: the same picture is the same file.
+
+    `tight` leaves out what is empty at its edges.
+    """
+    out = io.BytesIO()
+    metadata = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}
+    edges: dict[str, Any] = {"bbox_inches": "tight", "pad_inches": 0.2} if tight else {}
+    figure.savefig(out, format=kind, dpi=RESOLUTION, metadata=metadata[kind], facecolor="white", **edges)
     return out.getvalue()
 
 

@@ -12,6 +12,7 @@ import robokin
 from robokin.description import library_names, load_any
 from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
+from robokin.inverse.branches import _meeting
 from robokin.inverse.solve import solve_many
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_angle, rotation_from_rpy, transform
@@ -365,3 +366,20 @@ def test_wrong_questions():
         robokin.solve_ik(robot, np.eye(3))
     with pytest.raises(InputError, match="no joints"):
         robokin.solve_ik(robokin.load("assembly"), np.eye(4))
+
+
+@pytest.mark.parametrize("name", ["puma560", "viperx300s", "widowx250s", "irb120"])
+def test_every_solution_of_an_arm_with_a_wrist_has_a_name_of_its_own(name):
+    robot = robokin.load(name)
+    q = np.random.default_rng(12).uniform(-2.5, 2.5, (40, robot.n))
+    q = np.where(robot.revolute, q, np.abs(q))
+    for result in robokin.solve_ik(robot, robokin.forward_kinematics(robot, q), limits=False):
+        names = [solution.branch for solution in result.solutions]
+        assert len(set(names)) == len(names)
+
+
+def test_the_point_where_two_axes_meet_is_found_from_any_points_on_them():
+    rng = np.random.default_rng(3)
+    meet, z0, z1 = rng.normal(size=(3, 20, 3))
+    o0, o1 = meet + rng.normal(size=(20, 1)) * z0, meet + rng.normal(size=(20, 1)) * z1
+    assert np.abs(_meeting(z0, o0, z1, o1) - meet).max() < 1e-12

@@ -7,8 +7,11 @@ import pytest
 from kinematics.chains import random_chain
 
 import robokin
+from robokin.description import library_names, load_any
 from robokin.errors import InputError
+from robokin.model import Robot
 
+ROBOTS = [name for name in library_names() if isinstance(load_any(name), Robot)]
 STEP = 1e-5  # of central differences: their error is STEP² + 1e-16 / STEP, about 1e-10
 
 
@@ -33,11 +36,15 @@ def test_it_is_the_finite_difference(convention, rng):
         assert np.max(np.abs(robokin.jacobian(robot, q) - by_differences(robot, q))) < 1e-7
 
 
-@pytest.mark.parametrize("name", ["puma560", "stanford", "scara", "panda", "human-arm", "thumb", "cartesian"])
+@pytest.mark.parametrize("name", ROBOTS)
 def test_library_robots(name, rng):
     robot = robokin.load(name)
     q = rng.uniform(-1, 1, robot.n)
-    assert np.max(np.abs(robokin.jacobian(robot, q) - by_differences(robot, q))) < 1e-8
+    expected = by_differences(robot, q)
+    assert np.max(np.abs(robokin.jacobian(robot, q) - expected), initial=0.0) < 1e-8
+    R = robokin.forward_kinematics(robot, q)[:3, :3]
+    turned = np.concatenate([R.T @ expected[:3], R.T @ expected[3:]])
+    assert np.max(np.abs(robokin.jacobian(robot, q, frame="tool") - turned), initial=0.0) < 1e-8
 
 
 def test_in_the_tools_axes_it_is_turned_back(rng):

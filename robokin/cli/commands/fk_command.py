@@ -56,6 +56,10 @@ def command(
         ),
     ] = None,
     frames: Annotated[bool, typer.Option("--frames", help="Also the frame after each row of the table.")] = False,
+    symbolic: Annotated[bool, typer.Option("--symbolic", help="The matrices in symbols, c1*c23, and no --q.")] = False,
+    latex: Annotated[bool, typer.Option("--latex", help="With --symbolic: in LaTeX, or -o FILE.tex.")] = False,
+    python: Annotated[bool, typer.Option("--python", help="With --symbolic: a numpy function, or -o FILE.py.")] = False,
+    numbers: Annotated[bool, typer.Option("--numbers", help="With --symbolic: lengths and twists as numbers.")] = False,
     as_: AsOption = None,
     output: ArrayOutputOption = None,
     format: FormatOption = None,
@@ -74,12 +78,23 @@ def command(
         robokin fk puma560 --q home --frames
         robokin fk puma560 --input joints.csv --output poses.csv
         shuf -n 3 joints.csv | robokin fk puma560 --q - -f csv
+        robokin fk anthropomorphic --symbolic
     """
     from robokin.cli import say
     from robokin.cli.arguments import load_robot, parse_configuration
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.poses import PoseMaker
 
+    if symbolic or latex or python or numbers:
+        from robokin.cli.symbolic_answer import check_options, form_of, write_symbolic
+
+        forms = {"--latex": latex, "--python": python, "--numbers": numbers}
+        check_options(symbolic, forms, {"--q": q, "--input": input, "--as": as_})
+        form = form_of(output, output_format(format, json), latex=latex, python=python)
+        model = load_robot(robot, parameter_overrides(set_))
+        units = effective_units(model.units, length, angle)
+        write_symbolic(model, units, form, output, numbers=numbers, frames=frames)
+        return 0
     kind = format_of(output, output_format(format, json), arrays=True)
     orientation = choose(as_, ORIENTATIONS, "--as")
     model = load_robot(robot, parameter_overrides(set_))

@@ -91,6 +91,9 @@ def command(
     tol_angle: Annotated[
         str | None, typer.Option("--tol-angle", metavar="A", help="Take the nearest pose when it is turned by no more.")
     ] = None,
+    explain: Annotated[
+        bool, typer.Option("--explain", help="Also the closed-form steps with the numbers in them, as a lecture does.")
+    ] = False,
     output: ArrayOutputOption = None,
     format: FormatOption = None,
     json: JsonOption = False,
@@ -113,6 +116,7 @@ def command(
         robokin ik puma560 --xyz 500,100,300 --rpy 180,0,45 --near home --max 1
         robokin ik puma560 --xyz 500,100,300 --approach 0,0,-1 --json
         robokin ik planar3r-brac --xy 26.4743,50.8716 --phi 85
+        robokin ik planar3r-brac --xy 26.4743,50.8716 --phi 85 --explain
         robokin ik scorbot --xyz 300,40,200 --rpy 0,170,8 --tol-angle 1
         robokin fk puma560 -i joints.csv -f csv | robokin ik puma560 -i - -f csv
     """
@@ -137,6 +141,8 @@ def command(
     given = [name for name, value in options.items() if value is not None]
     if input is not None and given:
         raise InputError(f"--input and {given[0]} exclude each other, expected one of them")
+    if explain:
+        _check_explain(kind, input, method)
     arguments: dict[str, Any] = {
         "limits": not no_limits,
         "method": choose(method, METHODS, "--method") or "auto",
@@ -155,10 +161,14 @@ def command(
             say(note)
         arguments["task"] = target.task
         blocks: Iterable[Array] = iter([target.T[None]])
+        if explain:
+            from robokin.lessons.explain import require_lesson
+
+            require_lesson(model, arguments["task"])
     else:
         blocks = read_targets(input, units)
 
-    answers = Answers(model, units, tolerances, arguments, alone=input is None)
+    answers = Answers(model, units, tolerances, arguments, alone=input is None, explain=explain)
     with sink(output) as stream:
         for data in answers.write(kind, blocks, stream):
             stream.write(data)
@@ -167,6 +177,18 @@ def command(
         verb = "has" if answers.unreached == 1 else "have"
         say(f"{answers.unreached} of {counted(answers.count, 'target')} {verb} no solution")
     return NO if answers.unreached else DONE
+
+
+def _check_explain(kind: str, input: str | None, method: str | None) -> None:
+    """Raise InputError for what a lesson does not go with."""
+    from robokin.errors import InputError
+
+    if input is not None:
+        raise InputError("--explain and --input exclude each other, expected one target, as --pose gives it")
+    if kind not in ("table", "json", "jsonl"):
+        raise InputError(f"--explain: found the format {kind}, expected table, json or jsonl")
+    if method == "numeric":
+        raise InputError("--explain shows the closed form, found --method numeric, expected auto or analytic")
 
 
 def _tolerance(text: str | None, option: str, units: Units, *, angle: bool) -> float | None:

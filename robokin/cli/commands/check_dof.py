@@ -1,0 +1,113 @@
+"""`robokin check dof`: answered counts of freedoms."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+from robokin.cli.check_options import GradescopeOption, PointsOption, VisibilityOption, delivery
+from robokin.cli.options import (
+    FormatOption,
+    JsonOption,
+    OutputOption,
+    SetOption,
+    choose,
+    complete_names,
+    parameter_overrides,
+)
+from robokin.errors import InputError, shown
+
+SPACES = ("planar", "spherical", "spatial")
+
+
+def command(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[NAME]",
+            help="A mechanism or a robot: of `robokin list`, or a path to a description.",
+            autocompletion=complete_names,
+            show_default=False,
+        ),
+    ] = None,
+    expect: Annotated[str | None, typer.Option("--expect", metavar="N", help="The answer for Grübler's count.")] = None,
+    mobility: Annotated[
+        str | None, typer.Option("--mobility", metavar="N", help="The answer for the true mobility.")
+    ] = None,
+    links: Annotated[
+        str | None, typer.Option("--links", metavar="N", help="Without a description: links, with the ground.")
+    ] = None,
+    joints: Annotated[
+        str | None,
+        typer.Option("--joints", metavar="JOINTS", help="With --links: joints by type, such as 6R or 12S,6P."),
+    ] = None,
+    space: Annotated[
+        str | None, typer.Option("--space", metavar="SPACE", help="With --links: planar, spherical or spatial.")
+    ] = None,
+    gradescope: GradescopeOption = None,
+    points: PointsOption = None,
+    visibility: VisibilityOption = None,
+    output: OutputOption = None,
+    format: FormatOption = None,
+    json: JsonOption = False,
+    set_: SetOption = None,
+) -> int:
+    """Mark an answered number of freedoms: Grübler's count, the true mobility, or both.
+
+    Examples:
+        robokin check dof four-bar --expect 1
+        robokin check dof sarrus --expect 0 --mobility 1 --json
+        robokin check dof --links 7 --joints 6R --space spatial --expect 6
+    """
+    from robokin.cli.check_dof import count_item
+    from robokin.cli.checks import Report
+
+    way = delivery(output, format, json, gradescope, points, visibility)
+    if expect is None and mobility is None:
+        raise InputError("--expect is missing, expected --expect N for the count or --mobility N for the true mobility")
+    bare = {"--links": links, "--joints": joints, "--space": space}
+    given = [option for option, value in bare.items() if value is not None]
+    if name is not None and given:
+        raise InputError(f"{given[0]} counts without a description, expected it without {name}")
+    if name is None and set_:
+        raise InputError("--set is for a description, expected its name")
+    record = _counted(links, joints, space) if name is None else _described(name, set_)
+    items = []
+    if expect is not None:
+        items.append(count_item("count", expect, "--expect", record["grubler"], lambda: ""))
+    if mobility is not None:
+        note = str(record["note"] or "there is no geometry")
+        items.append(count_item("mobility", mobility, "--mobility", record["mobility"], lambda: note))
+    label = record["name"] or "counted"
+    return way.deliver(Report("dof", str(record.get("id") or name or label), None, {}, tuple(items)))
+
+
+def _counted(links: str | None, joints: str | None, space: str | None) -> dict[str, Any]:
+    """The count of bare numbers."""
+    from robokin.cli.bare_counts import bare_record, parse_joints
+    from robokin.cli.check_dof import whole_number
+
+    if links is None or joints is None or space is None:
+        raise InputError("NAME is missing, expected a mechanism, or all of --links, --joints and --space")
+    chosen = choose(space, SPACES, "--space")
+    number = whole_number(links, "--links")
+    if number is None or not 1 <= number <= 10**6:
+        raise InputError(f"--links: found '{shown(links)}', expected a whole number from 1 to 1000000")
+    assert chosen is not None
+    return bare_record(number, parse_joints(joints, chosen), chosen)
+
+
+def _described(name: str, set_: list[str] | None) -> dict[str, Any]:
+    """The count and the mobility of what a description describes."""
+    from robokin.cli.mobilities import mechanism_record, robot_record
+    from robokin.description.library import load_any
+    from robokin.mobility.verdict import mobility_of
+    from robokin.model import Mechanism, Robot
+
+    entry = load_any(name, parameter_overrides(set_))
+    if isinstance(entry, Mechanism):
+        return mechanism_record(mobility_of(entry), entry.units, 0)
+    if isinstance(entry, Robot):
+        return robot_record(entry, entry.units)
+    raise InputError(f"{name} is a wheeled base, expected a mechanism or a robot")

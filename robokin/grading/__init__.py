@@ -1,0 +1,1 @@
+"""Marking answers: poses, joint values, tables, Jacobians against what is right, within a stated tolerance."""

@@ -1,0 +1,163 @@
+"""One branch of inverse kinematics along a path of poses."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.analysis import analysis_of
+from robokin.inverse.numeric import descend, pose_error
+from robokin.inverse.solve import solve_many
+from robokin.inverse.verify import CLOSES
+from robokin.kinematics.chain import Chain
+from robokin.model import Robot
+
+Array = NDArray[np.float64]
+
+NEAR = 0.1
+"""A step that moves no joint by more [rad | size] is no jump: different solutions are farther apart but near a
+singularity, and there a step is halved while it gets shorter by that."""
+
+HALVINGS = 26
+"""How often a step is halved at most, to 1e-8 of itself. A joint that still moves by more than NEAR jumps."""
+
+MOST = 1_000_000
+"""Steps of a path at most: what is kept of each is some hundred bytes."""
+
+STEPS = 30
+"""Newton steps to one pose; three do where the arm is regular."""
+
+LONGEST = 0.3
+"""The longest of them [rad | size]."""
+
+DAMPING = 1e-3
+"""Damping of these steps as a part of the squared error."""
+
+BLOCK = 1024
+"""Poses that are solved together."""
+
+
+class Follower:
+    """Follows poses at(s): (m,) -> (m, 4, 4), looked up at the places s (k,) one after the other."""
+
+    def __init__(self, robot: Robot, at: Callable[[Array], Array], task: Literal["pose", "position"], s: Array) -> None:
+        self.robot, self.at, self.task, self.s = robot, at, task, s
+        self.analysis = analysis_of(robot, task)
+        self.scale = np.where(robot.revolute, 1.0, self.analysis.size)
+        self.numeric = bool(self.analysis.redundancy or self.analysis.idle) or self.analysis.solver is None
+        self.block: tuple[int, Array, NDArray[np.intp]] | None = None
+        self.poses = at(s)
+        self.ahead = np.zeros(robot.n)
+
+    def advance(self, q: Array, before: float, i: int) -> tuple[float, Array, str]:
+        """From q (n,) at `before` to place i: how far it got, with which q, and what stopped it (unreachable, jump)."""
+        end = float(self.s[i])
+        found = self.track(q, self.poses[i], self.ahead) if self.numeric else self.chosen(self.listed(i), q)
+        if found is not None and self.move(q, found) <= NEAR:
+            # Steps grow and shrink slowly with the time law: the last one is a good guess of the next.
+            self.ahead = found - q
+            return end, found, ""
+        self.ahead = np.zeros_like(q)
+        return self.halved(q, before, end)
+
+    def halved(self, q: Array, before: float, end: float) -> tuple[float, Array, str]:
+        """The same by steps as short as they must be."""
+        at, step, least = before, end - before, (end - before) * 0.5**HALVINGS
+        why = ""
+        while at < end:
+            ahead = min(at + step, end)
+            found = self.nearest(q, ahead)
+            if found is not None and self.move(q, found) <= NEAR:
+                at, q, step = ahead, found, 2.0 * step
+                continue
+            why = "unreachable" if found is None else "jump"
+            step /= 2.0
+            if step < least:
+                return at, q, why
+        return end, q, ""
+
+    def nearest(self, q: Array, s: float) -> Array | None:
+        """The configuration (n,) at s that is nearest to q, or None where there is none."""
+        if self.numeric:
+            return self.track(q, self.at(np.array([s]))[0], np.zeros_like(q))
+        # Asked for near q, a family of solutions is met at its nearest member.
+        batch = solve_many(self.robot, self.at(np.array([s])), limits=False, near=q, task=self.task)
+        return self.chosen(batch.q[0, : batch.count[0]], q)
+
+    def listed(self, i: int) -> Array:
+        """All configurations (k, n) at place i, some poses ahead solved with them."""
+        if self.block is None or not self.block[0] <= i < self.block[0] + BLOCK:
+            batch = solve_many(self.robot, self.poses[i : i + BLOCK], limits=False, task=self.task)
+            self.block = i, batch.q, batch.count
+        first, rows, count = self.block
+        return rows[i - first, : count[i - first]]
+
+    def chosen(self, rows: Array, q: Array) -> Array | None:
+        """The nearest of the rows (k, n), angles turned as near to q as they come."""
+        if not len(rows):
+            return None
+        gap = rows - q
+        gap = np.where(self.robot.revolute, gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi)), gap)
+        best = int(np.argmin(np.max(np.abs(gap) / self.scale, axis=1)))
+        return np.asarray(q + gap[best])
+
+    def track(self, q: Array, T: Array, ahead: Array) -> Array | None:
+        """The configuration at the pose T (4, 4) that steps of least joint motion lead to from q, or from q + ahead."""
+        chain, size, opened = self.analysis.chain, self.analysis.size, self.analysis.open
+        x = np.concatenate([q, np.zeros(opened)])
+        if opened:
+            # What is left open turns from where the tool is: its rotation is the target's.
+            T = T.copy()
+            T[:3, :3] = one_jacobian(chain, x, size)[0][:3, :3]
+        found = self.steps(np.concatenate([q + ahead, np.zeros(opened)]), T[None])
+        if found is not None and (self.robot.within_limits(found[: len(q)]) or not self.robot.within_limits(q)):
+            return found[: len(q)]
+        # A joint that meets its limit is held there, if the others can do without it.
+        limits = np.concatenate([self.robot.limits, np.tile([-np.inf, np.inf], (opened, 1))])
+        held, error = descend(chain, T[None], x[None], size, limits=limits)
+        if np.max(np.abs(error)) <= CLOSES and self.robot.within_limits(q):
+            return np.asarray(held[0, : len(q)])
+        return None if found is None else found[: len(q)]
+
+    def steps(self, x: Array, T: Array) -> Array | None:
+        """Joint values (k,) that Newton's steps of least motion lead to from x (k,); None where they do not close."""
+        chain, size = self.analysis.chain, self.analysis.size
+        scale = np.where(chain.revolute, 1.0, size)
+        for _ in range(STEPS):
+            F, A = one_jacobian(chain, x, size)
+            error = pose_error(T, F[None], size)[0]
+            off = float(np.max(np.abs(error)))
+            if off <= 0.1 * CLOSES:
+                return x
+            # The damping is far below what regular configurations notice, and keeps singular ones finite.
+            dx = A.T @ np.linalg.solve(A @ A.T + DAMPING * (off * off + 1e-9) * np.eye(6), error)
+            x = x + dx * min(1.0, LONGEST / max(float(np.max(np.abs(dx))), LONGEST)) * scale
+        return None
+
+    def move(self, q: Array, other: Array) -> float:
+        """The greatest joint move between two configurations [rad | size]."""
+        return float(np.max(np.abs(other - q) / self.scale))
+
+
+def one_jacobian(chain: Chain, x: Array, size: float) -> tuple[Array, Array]:
+    """The last frame (4, 4) [m] and the Jacobian (6, k), lengths in sizes, at one configuration x: (k,) [rad | m].
+
+    Poses that are needed one after the other do not gain from kinematics in columns: this takes a tenth of the time.
+    """
+    T = chain.constants[0].copy()
+    z, o = np.empty((chain.n, 3)), np.empty((chain.n, 3))
+    for i, value in enumerate((x + chain.offsets).tolist()):
+        z[i], o[i] = T[:3, 2], T[:3, 3]
+        if chain.revolute[i]:
+            c, s = math.cos(value), math.sin(value)
+            T[:, :2] = T[:, :2] @ np.array([[c, -s], [s, c]])
+        else:
+            T[:, 3] += value * T[:, 2]
+        T = T @ chain.constants[i + 1]
+    turns = chain.revolute[:, None]
+    linear = np.where(turns, np.cross(z, T[:3, 3] - o) / size, z)
+    return T, np.concatenate([linear, np.where(turns, z, 0.0)], axis=1).T

@@ -1,0 +1,251 @@
+"""What the Jacobian says at a configuration: how freely the tool can move, and what is lost where it cannot.
+
+Lengths and angles do not compare, so the singular values are those of the Jacobian with lengths, also those of
+sliding joints, in the arm's characteristic size; rank and condition rest on them. Manipulability is the books'
+number, √det(J Jᵀ) of the Jacobian as it stands (T. Yoshikawa, Manipulability of robotic mechanisms, Int. J. Robotics
+Research 4(2), 1985): the product of the raw singular values.
+
+A twist u cannot be made where uᵀJ = 0. Such a u is a wrench (f, m) that no joint feels: m = 0 at a point says that
+the point cannot move along f; f = 0 that the tool cannot turn about m; in any case that it cannot turn about m
+while the point at which m is taken stands still.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from robokin.errors import InputError
+from robokin.kinematics.chain import chain_of
+from robokin.kinematics.forward import joint_frames
+from robokin.kinematics.jacobian import jacobian
+from robokin.kinematics.structure import structure_of
+from robokin.model import Robot
+
+Array = NDArray[np.float64]
+TaskName = Literal["pose", "position", "orientation"]
+
+SINGULAR = 1e-6
+"""Singular values below this part of the greatest are zero. Joint values are typed with some six digits, and
+tables printed with five; the rounding of the calculation is far below (1e-15)."""
+
+ROWS = {"pose": slice(0, 6), "position": slice(0, 3), "orientation": slice(3, 6)}
+
+
+@dataclass(frozen=True, eq=False)
+class MotionTask:
+    """Which part of the twist counts for an arm.
+
+    dimension: M, in how many directions the arm moves the tool at a generic configuration; span: (6, s), lengths in
+    sizes, all directions that it can move in somewhere, in the axes of the world (s > M for arms of five joints, say).
+    """
+
+    name: TaskName
+    dimension: int
+    size: float
+    span: Array
+
+    @property
+    def rows(self) -> slice:
+        """The rows of the Jacobian that count."""
+        return ROWS[self.name]
+
+
+@dataclass(frozen=True, eq=False)
+class Differential:
+    """Differential kinematics at configurations: leading dimensions as those of q.
+
+    jacobian: (..., 6, n) [m/rad | 1, 1 | 0], as `robokin.jacobian`; rank: (...); singular_values: (..., M), greatest
+    first, lengths in the task's size; raw_singular_values: (..., M) of the Jacobian in metres; manipulability: (...)
+    their product, 0 where the rank is less than M; condition: (...) greatest by least of `singular_values`, infinite
+    where the rank is less; null_space: (..., n, n) rows that span R^n, of which those from `rank` on are joint rates,
+    in radians and sizes, that do not move the tool.
+    """
+
+    task: MotionTask
+    jacobian: Array
+    rank: NDArray[np.intp]
+    singular_values: Array
+    raw_singular_values: Array
+    manipulability: Array
+    condition: Array
+    null_space: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Lost:
+    """A direction that the tool cannot move in.
+
+    twist: (6,) of length 1, linear before angular, lengths in sizes; words: the same in words.
+    """
+
+    twist: Array
+    words: str
+
+
+def characteristic_length(robot: Robot) -> float:
+    """The size of an arm [m]: the distances from joint to joint and on to the tool added up, or 1 where all are 0."""
+    lengths = np.linalg.norm(chain_of(robot).constants[1:, :3, 3], axis=1)
+    return float(np.sum(lengths)) or 1.0
+
+
+_tasks: WeakKeyDictionary[Robot, dict[str | None, MotionTask]] = WeakKeyDictionary()
+
+
+def motion_task(robot: Robot, name: TaskName | None = None) -> MotionTask:
+    """What counts for an arm: the whole pose, the position or the orientation; by itself what the books take.
+
+    Arms of up to three joints place a point, if their joints move the tool's origin in as many directions, or else
+    turn the tool (a wrist), if they turn it about as many axes. For all others the whole pose counts. Raises
+    InputError for a robot without joints, or for another name.
+    """
+    if not robot.n:
+        raise InputError(f"{robot.name} has no joints, expected a robot that can move")
+    if name is not None and name not in ROWS:
+        raise InputError(f"found task '{name}', expected {' or '.join(get_args(TaskName))}")
+    kept = _tasks.setdefault(robot, {})
+    if name not in kept:
+        kept[name] = _task(robot, name)
+    return kept[name]
+
+
+def _task(robot: Robot, name: TaskName | None) -> MotionTask:
+    size = characteristic_length(robot)
+    # Arbitrary configurations: what holds at them but for chance holds nearly everywhere.
+    q = np.random.default_rng(7).uniform(-1.0, 1.0, (8, robot.n)) * np.where(robot.revolute, 1.0, size)
+    J = scaled(robot, jacobian(robot, q), size)
+
+    def rank(rows: slice) -> int:
+        values = np.linalg.svd(J[:, rows], compute_uv=False)
+        return int(np.max(np.sum(values > SINGULAR * np.maximum(values[:, :1], SINGULAR), axis=1)))
+
+    if name is None:
+        name = "pose"
+        if robot.n <= 3:
+            for part in ("position", "orientation"):
+                if name == "pose" and rank(ROWS[part]) == robot.n:
+                    name = part
+    counted = np.zeros_like(J)
+    counted[:, ROWS[name]] = J[:, ROWS[name]]
+    u, values, _ = np.linalg.svd(np.moveaxis(counted, 1, 0).reshape(6, -1))
+    span = u[:, : int(np.sum(values > SINGULAR * max(values[0], SINGULAR)))]
+    return MotionTask(name, rank(ROWS[name]), size, span)
+
+
+def scaled(robot: Robot, J: Array, size: float) -> Array:
+    """Jacobians (..., 6, n) with lengths in units of `size` [m], also those of sliding joints."""
+    S = np.array(J)
+    S[..., :3, :] /= size
+    S[..., ~robot.revolute] *= size
+    return S
+
+
+def differential_kinematics(
+    robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base", task: TaskName | None = None
+) -> Differential:
+    """The Jacobian at q with its rank, singular values, manipulability and condition number.
+
+    q: (..., n) [rad | m]; `frame` gives the axes of the Jacobian; `task` what counts of the twist: pose, position,
+    orientation, by itself as `motion_task` says. Raises InputError for a robot without joints.
+    """
+    kind = motion_task(robot, task)
+    J = jacobian(robot, q, frame)
+    M, rows = kind.dimension, kind.rows
+    _, values, null = np.linalg.svd(scaled(robot, J, kind.size)[..., rows, :])
+    values = values[..., :M]
+    raw = np.asarray(np.linalg.svd(J[..., rows, :], compute_uv=False)[..., :M], dtype=np.float64)
+    greatest = np.max(values, axis=-1, initial=0.0)
+    rank = np.asarray(np.sum(values > SINGULAR * np.maximum(greatest, SINGULAR)[..., None], axis=-1), dtype=np.intp)
+    regular = (rank == M) & (M > 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        condition = np.where(regular, greatest / np.min(values, axis=-1, initial=np.inf), np.inf)
+    manipulability = np.where(regular, np.prod(raw, axis=-1), 0.0)
+    return Differential(kind, J, rank, values, raw, manipulability, condition, null)
+
+
+def null_space_joints(found: Differential) -> list[tuple[int, ...]]:
+    """For each configuration the joints, from 1, that can move together while the tool stands still to first order."""
+    n = found.null_space.shape[-1]
+    ranks, null = found.rank.reshape(-1), found.null_space.reshape(-1, n, n)
+    still = np.arange(n) >= ranks[:, None]
+    moved = np.max(np.abs(null) * still[:, :, None], axis=1) > SINGULAR
+    return [tuple((np.flatnonzero(row) + 1).tolist()) for row in moved]
+
+
+def lost_directions(
+    robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base", task: TaskName | None = None
+) -> list[Lost]:
+    """What the tool cannot do at one configuration q: (n,) [rad | m] where the rank is less than generic; else [].
+
+    Directions in which the arm can never move are no loss and left out.
+    """
+    kind = motion_task(robot, task)
+    q = np.asarray(q, dtype=np.float64)
+    J = np.zeros((6, robot.n))
+    J[kind.rows] = scaled(robot, jacobian(robot, q), kind.size)[kind.rows]
+    u, values, _ = np.linalg.svd(kind.span.T @ J)
+    rank = int(np.sum(values > SINGULAR * max(values[0], SINGULAR)))
+    if rank >= kind.dimension:
+        return []
+    F = joint_frames(robot, q)
+    centre = wrist_centre(robot, F)
+    points = [(f"joint {k + 1}", F[k, :3, 3]) for k in range(robot.n - 1, -1, -1)]
+    if centre is not None:
+        points = [("the wrist centre", centre)]
+    offsets = [(name, (point - F[-1, :3, 3]) / kind.size) for name, point in points]
+    twists = _sparse((kind.span @ u[:, rank:]).T)
+    turn = F[-1, :3, :3] if frame == "tool" else np.eye(3)
+    return [_lost(twist, offsets, turn, centre is not None) for twist in twists]
+
+
+def wrist_centre(robot: Robot, frames: Array) -> Array | None:
+    """(..., 3) where the last three axes meet [m], of joint frames (..., n + 1, 4, 4); None for no such wrist."""
+    if not structure_of(robot).wrist.startswith("spherical"):
+        return None
+    z, o = frames[..., -4:-1, :3, 2], frames[..., -4:-1, :3, 3]
+    # The point nearest to the last two axes, which are never parallel in a wrist.
+    normal = np.cross(z[..., 1, :], z[..., 2, :])
+    between = np.cross(o[..., 2, :] - o[..., 1, :], z[..., 1, :])
+    along = np.sum(between * normal, axis=-1) / np.sum(normal * normal, axis=-1)
+    return np.asarray(o[..., 2, :] + along[..., None] * z[..., 2, :])
+
+
+def _lost(twist: Array, offsets: list[tuple[str, Array]], turn: Array, wrist: bool) -> Lost:
+    f, m = twist[:3] @ turn, twist[3:] @ turn
+    u = np.concatenate([f, m])
+    u = np.where(np.abs(u) < SINGULAR, 0.0, u) / np.linalg.norm(u)
+    u = u * np.sign(u[np.flatnonzero(u)[0]]) + 0.0
+    f, m = u[:3], u[3:]
+    if not f.any():
+        return Lost(u, f"rotation about {_direction(m)}")
+    if not m.any():
+        return Lost(u, f"translation along {_direction(f)}")
+    moments = [(name, m - np.cross(offset @ turn, f)) for name, offset in offsets]
+    for name, about in moments:
+        if np.linalg.norm(about) < 10.0 * SINGULAR:
+            return Lost(u, f"translation of {name} along {_direction(f)}")
+    still, about = moments[0] if wrist else ("the tool's origin", m)
+    return Lost(u, f"rotation about {_direction(about)} while {still} stands still")
+
+
+def _direction(v: Array) -> str:
+    """A unit vector in words, its first element that is not zero positive."""
+    unit = np.round(v / np.linalg.norm(v), 4)
+    unit = unit * np.sign(unit[np.flatnonzero(unit)[0]]) + 0.0
+    return f"[{', '.join(f'{x:.4f}'.rstrip('0').rstrip('.') for x in unit)}]"
+
+
+def _sparse(basis: Array) -> Array:
+    """Vectors (k, 6) of length 1 that span the same as (k, 6), with few entries each: Gauss and Jordan's form."""
+    out = basis.copy()
+    for i in range(len(out)):
+        row, column = divmod(int(np.argmax(np.abs(out[i:]))), out.shape[1])
+        out[[i, i + row]] = out[[i + row, i]]
+        out[i] /= out[i, column]
+        others = np.arange(len(out)) != i
+        out[others] -= out[others, column][:, None] * out[i]
+    return np.asarray(out / np.linalg.norm(out, axis=1, keepdims=True))

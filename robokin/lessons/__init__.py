@@ -1,0 +1,1 @@
+"""Closed-form inverse kinematics as a lecture writes it down: each step with its formula and its numbers."""

@@ -1,0 +1,153 @@
+"""Pieces to the flat faces that an eye sees of them, coloured and shaded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.pictures.arm import SQUARE, Arm, Bar, ends_of, perpendicular
+
+Array = NDArray[np.float64]
+
+COLOURS = {
+    "link": "#a9bac9", "slide": "#e5b48f", "revolute": "#2b628f", "prismatic": "#c8551b", "stroke": "#b98a6a",
+    "base": "#6d757d", "x": "#cf2f2f", "y": "#2a8f3c", "z": "#2f55cf",
+}  # fmt: skip
+"""Colours of the pieces and of a frame's axes."""
+
+CROSS = "#222222"
+"""Colour of a place that was asked for."""
+
+GHOSTS = ("#c8551b", "#3f7f4f", "#8a5a9e", "#b08a1e", "#4f8f9e", "#a8455d", "#5f5f9e", "#6e6a3a")
+"""Colours of ghosts, told apart by the colour-blind too when few."""
+
+PALE = (0.45, 0.65)
+"""How pale the joints and the links of a ghost are."""
+
+LIGHT = np.array([-0.42, 0.62, 0.66])
+"""Where the light comes from: right, up, towards the eye."""
+
+DARK = 0.66
+"""Brightness of what the light does not reach."""
+
+PIECE = 2.0
+"""Widths of a piece's parts: what is short is put in the right order by its middle's distance."""
+
+PARTS = 24
+"""Parts of a piece at most."""
+
+SAME = 1e-3
+"""Pieces of two arms whose ends are nearer than this part of the arm's length are one piece to the eye."""
+
+AXIS, SHAFT = 0.11, 0.0042
+"""Length and radius of the arrows of a frame, as parts of the arm's length."""
+
+
+@dataclass(frozen=True, eq=False)
+class Face:
+    """A flat face: its corners (k, 3) [m] and its colour (3,) in 0 … 1."""
+
+    corners: Array
+    colour: Array
+
+
+def colour(name: str, pale: float = 0.0) -> Array:
+    """(3,) in 0 … 1 the red, green and blue of `#rrggbb`, mixed with white."""
+    rgb = np.array([int(name[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
+    return np.asarray(rgb + (1.0 - rgb) * pale)
+
+
+def arm_faces(
+    arm: Arm, frames: Array, eye: Array, ghost: str | None = None, drawn: set[tuple[object, ...]] | None = None
+) -> Iterator[Face]:
+    """The faces of an arm in the world; frames: `body_frames`; eye: `eye_axes`; ghost: the one colour of a ghost.
+
+    drawn: what arms before have drawn; a ghost's piece that falls together with one of those is left out.
+    """
+    placed = [(bar, *ends_of(bar, frames)) for bar in arm.bars]
+    joints = [entry for entry in placed if entry[0].role in ("revolute", "prismatic")]
+    for bar, a, b in placed:
+        if ghost is not None and bar.role in ("stroke", "base"):
+            continue
+        ends = np.round(np.array([a, b]) / (SAME * arm.length)).astype(int).tolist()
+        key = (bar.role, *map(tuple, sorted(ends)))
+        if drawn is not None:
+            if ghost is not None and key in drawn:
+                continue
+            drawn.add(key)
+        paint = colour(COLOURS[bar.role]) if ghost is None else colour(ghost, PALE[bar.role == "link"])
+        across = frames[bar.bodies[0], :3, :3] @ bar.across
+        faces = _prism(a, b, across, (bar.width, bar.width), bar.sides, eye, paint)
+        if bar.role in ("revolute", "prismatic", "base"):
+            yield from faces
+        else:
+            yield from (face for face in faces if not _inside(face.corners.mean(axis=0), joints))
+
+
+def _inside(point: Array, joints: Sequence[tuple[Bar, Array, Array]]) -> bool:
+    """Whether a point (3,) [m] is within a joint: what is there cannot be seen, but its order would be in doubt."""
+    for bar, a, b in joints:
+        d = (b - a) / np.linalg.norm(b - a)
+        along = (point - a) @ d
+        if 0.0 < along < np.linalg.norm(b - a) and np.linalg.norm(point - a - along * d) < 0.98 * bar.width:
+            return True
+    return False
+
+
+def frame_faces(T: Array, length: float, eye: Array) -> Iterator[Face]:
+    """The three arrows of a frame T (4, 4) [m] on an arm of some length [m]: x red, y green, z blue."""
+    for k, name in enumerate("xyz"):
+        axis, aside, paint = T[:3, k], T[:3, (k + 1) % 3], colour(COLOURS[name])
+        neck, tip = (T[:3, 3] + part * AXIS * length * axis for part in (0.78, 1.0))
+        yield from _prism(T[:3, 3], neck, aside, (SHAFT * length, SHAFT * length), 8, eye, paint)
+        yield from _prism(neck, tip, aside, (2.8 * SHAFT * length, 0.0), 10, eye, paint)
+
+
+def cross_faces(p: Array, length: float, eye: Array) -> Iterator[Face]:
+    """Three short bars that cross at a place p (3,) [m] that was asked for with any orientation."""
+    for k, axis in enumerate(np.eye(3)):
+        a, b = (p + end * 0.5 * AXIS * length * axis for end in (-1.0, 1.0))
+        yield from _prism(a, b, np.roll(np.eye(3)[k], 1), (SHAFT * length, SHAFT * length), 8, eye, colour(CROSS))
+
+
+def _prism(
+    a: Array, b: Array, across: Array, widths: tuple[float, float], sides: int, eye: Array, paint: Array
+) -> Iterator[Face]:
+    """The faces of a prism or a pyramid from a to b that the eye sees."""
+    long = float(np.linalg.norm(b - a))
+    if long < 1e-3 * max(widths):
+        return
+    d = (b - a) / long
+    u = across - (across @ d) * d
+    u = u / np.linalg.norm(u) if np.linalg.norm(u) > 1e-6 else perpendicular(d)
+    turn = 2.0 * np.pi * (np.arange(sides + 1) + 0.5) / sides
+    ring = np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * np.cross(d, u)
+    # Half the side of a square is the distance of its sides, not of its corners.
+    reach = np.array(widths) * (np.sqrt(2.0) if sides == SQUARE else 1.0)
+    parts = min(max(int(np.ceil(long / (PIECE * max(widths)))), 1), PARTS)
+    at = np.linspace(0.0, 1.0, parts + 1)
+    rings = (a + (b - a) * at[:, None])[:, None] + (reach[0] + (reach[1] - reach[0]) * at)[:, None, None] * ring
+    normals = ring[:-1] + ring[1:]
+    normals = normals / np.linalg.norm(normals, axis=1)[:, None] + (reach[0] - reach[1]) / long * d
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    for k in np.flatnonzero(normals @ eye[2] > 0.0).tolist():
+        shade = _shaded(paint, eye @ normals[k])
+        for i in range(parts):
+            yield Face(np.array([rings[i, k], rings[i, k + 1], rings[i + 1, k + 1], rings[i + 1, k]]), shade)
+    for end, normal in ((rings[0], -d), (rings[-1], d)):
+        if normal @ eye[2] > 0.0:
+            yield Face(end[:-1], _shaded(paint, eye @ normal))
+
+
+def _shaded(paint: Array, normal: Array) -> Array:
+    light = max(float(normal @ LIGHT), 0.0) / float(np.linalg.norm(LIGHT))
+    return np.asarray(np.clip(paint * (DARK + (1.08 - DARK) * light), 0.0, 1.0))
+
+
+def ordered(faces: Sequence[Face], eye: Array) -> list[Face]:
+    """Faces from the farthest to the nearest."""
+    depth = [float(np.mean(face.corners @ eye[2])) for face in faces]
+    return [faces[i] for i in np.argsort(depth, kind="stable")]

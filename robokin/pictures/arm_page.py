@@ -1,0 +1,106 @@
+"""A page in one file that needs no network: the arm turns with the mouse and moves with a slider for each joint.
+
+The page computes forward kinematics itself, from the chain's constants; `window.robokin.fk(q)` is that function: joint
+values in the page's units in, a 4×4 matrix with its origin in the page's length unit out.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.kinematics.chain import chain_of
+from robokin.pictures.arm import Bar, default_configuration
+from robokin.pictures.arm_faces import COLOURS, CROSS, GHOSTS
+from robokin.pictures.arm_scene import Posture, Scene
+from robokin.pictures.page import filled
+
+Array = NDArray[np.float64]
+
+DIGITS = 5
+"""Significant digits of what is only drawn: far finer than a screen."""
+
+
+def arm_page(scene: Scene) -> bytes:
+    """The scene as an .html file."""
+    robot, units = scene.arm.robot, scene.units
+    scale = 1.0 / units.metres
+    chain = chain_of(robot)
+    low, high = scene.bounds()
+    home, home_name = default_configuration(robot)
+    poses = {home_name or "zero": home} | dict(robot.poses)
+    data = {
+        "title": scene.title,
+        "robot": scene.name,
+        "length": units.length,
+        "angle": units.angle,
+        "radians": units.radians,
+        # What forward kinematics needs, in all its digits; the rest is for the eye.
+        "constants": [_scaled(C, scale) for C in chain.constants],
+        "joints": [_joint(scene, i) for i in range(robot.n)],
+        "q": _values(scene, scene.postures[0].q),
+        "poses": {name: _values(scene, q) for name, q in poses.items()},
+        "ghosts": [_ghost(scene, posture) for posture in scene.postures],
+        "target": None if scene.target is None else _scaled(scene.target, scale),
+        "turned": scene.turned,
+        "note": scene.note,
+        "frames": [[mark.name, mark.body, _scaled(mark.T, scale)] for mark in scene.arm.marks],
+        "shown": scene.frames,
+        "bars": [_bar(bar, scale) for bar in scene.arm.bars],
+        "lines": [_short(line * scale) for line in scene.arm.lines],
+        "size": scene.arm.length * scale,
+        "box": _short(np.array([low, high]) * scale),
+        "view": list(scene.view),
+        "colours": COLOURS | {"cross": CROSS},
+        "palette": list(GHOSTS),
+    }
+    return filled("arm.html", scene.title, data)
+
+
+def _scaled(T: Array, scale: float) -> list[float]:
+    T = np.array(T)
+    T[:3, 3] *= scale
+    values: list[float] = (T + 0.0).ravel().tolist()
+    return values
+
+
+def _values(scene: Scene, q: Array) -> list[float]:
+    """Joint values in the units."""
+    values: list[float] = (q / _factors(scene) + 0.0).tolist()
+    return values
+
+
+def _factors(scene: Scene) -> Array:
+    return np.where(scene.arm.robot.revolute, scene.units.radians, scene.units.metres)
+
+
+def _joint(scene: Scene, i: int) -> dict[str, Any]:
+    """A joint as its slider needs it; `free` tells which ends are none of the description's."""
+    robot, factor = scene.arm.robot, float(_factors(scene)[i])
+    joint = robot.joints[i]
+    # Without limits a joint turns once round, and slides by the arm's length.
+    reach = np.pi if robot.revolute[i] else scene.arm.length
+    ends = [sign * reach if np.isinf(end) else end for sign, end in zip((-1.0, 1.0), joint.limits, strict=True)]
+    return {
+        "name": joint.name,
+        "type": joint.type.letter,
+        "offset": joint.offset if robot.revolute[i] else joint.offset / factor,
+        "limits": [float(f"{end / factor:.12g}") for end in ends],
+        "free": [bool(np.isinf(end)) for end in joint.limits],
+    }
+
+
+def _ghost(scene: Scene, posture: Posture) -> dict[str, Any]:
+    return {"q": _values(scene, posture.q), "label": posture.label, "ghost": posture.ghost}
+
+
+def _bar(bar: Bar, scale: float) -> list[Any]:
+    ends = [_short(bar.a * scale), _short(bar.b * scale), _short(bar.across)]
+    return [bar.role, *bar.bodies, *ends, float(f"{bar.width * scale:.{DIGITS}g}"), bar.sides]
+
+
+def _short(values: Array) -> Any:
+    digits = [float(f"{value:.{DIGITS}g}") + 0.0 for value in np.ravel(values).tolist()]
+    return np.reshape(digits, np.shape(values)).tolist()

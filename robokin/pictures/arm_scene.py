@@ -1,0 +1,110 @@
+"""Which arms stand in a picture, solid or as ghosts, with which target, and from where they are seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.model import Robot
+from robokin.pictures.arm import Arm, Mark, body_frames, ends_of, plane_of
+from robokin.units import Units
+
+Array = NDArray[np.float64]
+
+SLANTING = (-58.0, 22.0)
+"""Azimuth and elevation [°] of the eye that a solid arm is seen from: x to the right, y away."""
+
+PLANES = {0: (0.0, 0.0), 1: (-90.0, 0.0), 2: (-90.0, 90.0)}
+"""Azimuth and elevation [°] of the eye that sees the plane across an axis x, y, z of the world upright."""
+
+MARGIN = 0.03
+"""Room about what is drawn, as a part of its longest side."""
+
+ALONG = 1e-9
+"""A direction is an axis of the world when its other components are below this."""
+
+
+@dataclass(frozen=True, eq=False)
+class Posture:
+    """The arm at q (n,) [rad | m], with what the picture calls it; a ghost is drawn pale."""
+
+    q: Array
+    label: str = ""
+    ghost: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A picture of an arm.
+
+    target (4, 4) [m]: the pose that was asked for, `turned` whether its orientation was; frames: whether all are
+    drawn, or base and tool alone; view: azimuth and elevation [°] of the eye, `flat` whether axes are drawn as in the
+    plane; name: what a shell calls the robot; note: what the user should know.
+    """
+
+    title: str
+    subtitle: str
+    units: Units
+    arm: Arm
+    postures: Sequence[Posture]
+    target: Array | None
+    frames: bool
+    view: tuple[float, float]
+    flat: bool
+    turned: bool = True
+    name: str = ""
+    note: str = ""
+
+    def bounds(self) -> tuple[Array, Array]:
+        """Corners (3,), (3,) [m] of a box about all that is drawn."""
+        room = 0.13 * self.arm.length
+        points = []
+        for posture in self.postures:
+            frames = body_frames(self.arm.robot, posture.q)
+            for bar in self.arm.bars:
+                ends = np.array(ends_of(bar, frames))
+                points += [ends - bar.width, ends + bar.width]
+            if not posture.ghost:
+                # The axes of the frames reach beyond what they stand on.
+                poses = [frames[mark.body] @ mark.T for mark in self.marks()]
+                points += [T[:3, 3] + room * np.vstack([np.zeros(3), T[:3, :3].T]) for T in poses]
+        if self.target is not None:
+            points.append(self.target[:3, 3] + room * np.vstack([np.zeros(3), self.target[:3, :3].T]))
+        low, high = np.min(np.concatenate(points), axis=0), np.max(np.concatenate(points), axis=0)
+        margin = MARGIN * float(np.max(high - low))
+        return low - margin, high + margin
+
+    def marks(self) -> list[Mark]:
+        """The frames that are drawn."""
+        return [mark for mark in self.arm.marks if self.frames or mark.name in ("base", "tool")]
+
+
+def usual_view(robot: Robot) -> tuple[tuple[float, float], bool]:
+    """From where an arm is seen when nobody says, and whether that is straight onto its plane."""
+    normal = plane_of(robot)
+    if normal is not None:
+        axis = int(np.argmax(np.abs(normal)))
+        if np.max(np.abs(np.delete(normal, axis))) < ALONG:
+            return PLANES[axis], True
+    return SLANTING, False
+
+
+def eye_axes(view: tuple[float, float]) -> Array:
+    """(3, 3) rows: right, up and towards the eye, for an eye at azimuth and elevation [°]."""
+    azimuth, elevation = np.radians(view)
+    (ca, sa), (ce, se) = ((np.cos(angle), np.sin(angle)) for angle in (azimuth, elevation))
+    return np.array([[-sa, ca, 0.0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]])
+
+
+def axis_names(view: tuple[float, float]) -> tuple[str, str] | None:
+    """The axes of the world that point right and up from a view; None where others do."""
+    names = []
+    for row in eye_axes(view)[:2]:
+        axis = int(np.argmax(np.abs(row)))
+        if np.max(np.abs(np.delete(row, axis))) > ALONG or row[axis] < 0.0:
+            return None
+        names.append("xyz"[axis])
+    return names[0], names[1]

@@ -1,0 +1,134 @@
+"""`robokin path`: rows of a path, its summary, and what ends it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from .conftest import poses_of, refused
+
+START, END = "90,-30,60,0,40,0", "60,-20,70,10,30,0"
+FROM = ["path", "puma560", "--from", START]
+DOWN = "0.5,0.3,-1.3"
+
+
+def test_the_document(call):
+    answer = call(*FROM, "--to", END, "--steps", "4", "--json")
+    assert (answer.status, answer.err) == (0, "")
+    document = answer.json
+    assert document["units"] == {"length": "mm", "angle": "deg"}
+    assert (document["kind"], document["steps"], document["complete"], document["fraction"]) == ("joint", 4, True, 1.0)
+    assert [row["t"] for row in document["path"]] == [0.0, 0.25, 0.5, 0.75, 1.0]
+    assert document["path"][0]["q"] == [90, -30, 60, 0, 40, 0]
+    assert document["path"][-1]["q"] == [60, -20, 70, 10, 30, 0]
+    assert document["greatest_moves"] == [30, 10, 10, 10, 10, 0]
+    T = poses_of("puma560", document["path"][2]["q"])
+    assert np.allclose(document["path"][2]["position"], T[:3, 3], atol=1e-9)
+    q = ",".join(map(repr, document["path"][-1]["q"]))
+    least = min(call("jacobian", "puma560", "--q", x, "--json").json["manipulability"] for x in (START, q))
+    assert document["least_manipulability"] <= least * (1 + 1e-9)
+
+
+def test_rows_are_the_same_in_every_format(call, tmp_path):
+    arguments = [*FROM, "--xyz", "-300,700,200", "--line", "--steps", "10"]
+    table = call(*arguments, "-f", "csv")
+    assert table.columns == ["t", "q1", "q2", "q3", "q4", "q5", "q6", "x", "y", "z", "roll", "pitch", "yaw"]
+    assert table.numbers.shape == (11, 13)
+    rows = call(*arguments, "-f", "jsonl").jsonl
+    assert [[row["t"], *row["q"], *row["position"], *row["rpy"]] for row in rows] == table.numbers.tolist()
+    assert all(row["units"] == {"length": "mm", "angle": "deg"} for row in rows)
+    assert call(*arguments, "-o", tmp_path / "p.npy").status == 0
+    assert np.load(tmp_path / "p.npy").tolist() == table.numbers.tolist()
+    p = table.numbers[:, 7:10]
+    assert np.allclose(p[-1], [-300, 700, 200], atol=1e-6)
+    assert np.allclose(table.numbers[:, 10:], table.numbers[0, 10:], atol=1e-6)
+
+
+def test_a_path_is_legal_input_of_fk(call):
+    table = call(*FROM, "--to", END, "--steps", "5", "-f", "csv")
+    poses = call("fk", "puma560", "-i", "-", "-f", "csv", stdin=table.out)
+    assert np.allclose(poses.numbers, table.numbers[:, 1:], atol=1e-9)
+
+
+def test_the_ends_of_a_line(call):
+    """The same end said in several ways."""
+    T = poses_of("puma560", [60, -20, 70, 10, 30, 0])
+    x, y, z = T[:3, 3]
+    rows = str(T.tolist())
+    ways = [["--to", END], ["--matrix", rows], ["--pose", f"Matrix({rows})"]]
+    lasts = [call(*FROM, *way, "--line", "--steps", "20", "-f", "csv").numbers[-1] for way in ways]
+    assert np.allclose(lasts[0][7:10], [x, y, z], atol=1e-6)
+    for last in lasts[1:]:
+        assert np.allclose(last, lasts[0], atol=1e-5)
+
+
+def test_joints_go_to_a_pose_by_the_nearest_solution(call):
+    target = ["--xyz", "-300,700,200", "--rpy", "0,90,90"]
+    document = call(*FROM, *target, "--steps", "2", "--json").json
+    near = call("ik", "puma560", *target, "--near", START, "--max", "1", "--json").json
+    assert np.allclose(document["path"][-1]["q"], near["solutions"][0]["q"], atol=1e-9)
+
+
+def test_what_ends_a_line_is_said(call, tmp_path):
+    arguments = [*FROM, "--xyz", "-300,700,-900", "--line"]
+    answer = call(*arguments, "--json")
+    document = answer.json
+    assert (answer.status, answer.err, document["complete"]) == (3, "", False)
+    event = document["events"][-1]
+    assert event["kind"] in ("limit", "unreachable")
+    assert 0.0 < event["fraction"] == document["fraction"] < 1.0
+    rows = call(*arguments, "-o", tmp_path / "part.csv")
+    assert rows.status == 3
+    assert f"{len(document['path'])} rows of 101" in rows.err
+    assert len((tmp_path / "part.csv").read_text().splitlines()) == len(document["path"]) + 1
+    table = call(*arguments)
+    assert (table.status, table.err) == (3, "")
+    assert "it can be followed up to" in table.text
+
+
+def test_an_end_out_of_reach_is_a_no(call):
+    answer = call(*FROM, "--xyz", "5000,0,0", "--json")
+    assert answer.status == 3
+    assert answer.json["fraction"] == 0.0
+    assert "out of reach" in answer.json["events"][0]["words"]
+
+
+def test_limits(call):
+    assert call(*FROM, "--to", "90,-30,60,0,150,0").status == 3
+    assert call(*FROM, "--to", "90,-30,60,0,150,0", "--no-limits").status == 0
+
+
+def test_a_redundant_arm_says_where_it_ends(call):
+    ends = ["--from", "0,-30,0,-90,0,90,0", "--to", "20,-20,0,-80,0,80,10"]
+    answer = call("path", "panda", *ends, "--line", "-f", "csv")
+    assert answer.status == 0
+    assert "another configuration" in answer.err
+
+
+def test_tables_fit_a_page(call):
+    for arguments in ([*FROM, "--to", END], [*FROM, "--xyz", "-300,700,-900", "--line"]):
+        answer = call(*arguments)
+        assert max(map(len, answer.lines)) <= 80
+        assert "…" not in answer.text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "fragments"),
+    [
+        (["puma560"], ["--from is missing", "expected 6 values"]),
+        (["puma560", "--from", START], ["there is no end", "expected --to"]),
+        (["puma560", "--from", "hom", "--to", END], ["--from", "'hom'", "did you mean 'home'"]),
+        (["puma560", "--from", START, "--to", "1,2"], ["--to", "found 2 values", "expected 6"]),
+        (["puma560", "--from", START, "--to", END, "--pose", "Trans(1,2,3)"], ["exclude each other"]),
+        (["puma560", "--from", START, "--pose", "Trans(1,2)"], ["--pose", "expected Trans(x, y, z)"]),
+        (["puma560", "--from", START, "--to", END, "--line", "--joint"], ["exclude each other"]),
+        (["puma560", "--from", START, "--to", END, "--steps", "0"], ["--steps", "'0'", "whole number"]),
+        (["puma560", "--from", START, "--to", END, "--steps", "ten"], ["--steps", "'ten'", "whole number"]),
+        (["puma560", "--from", START, "--to", END, "--task", "pose"], ["--task goes with --line"]),
+        (["assembly", "--from", "", "--to", ""], ["no joints"]),
+        (["puma560", "--from", START, "--xy", "1,2", "--line"], ["--xy", "expected"]),
+        (["scara", "--from", "0,0,1e300,0", "--to", "0,0,0,0"], ["too far"]),
+    ],
+)
+def test_what_is_wrong_is_said(call, arguments, fragments):
+    refused(call("path", *arguments), *fragments)

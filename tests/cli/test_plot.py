@@ -1,0 +1,180 @@
+"""`robokin plot`: pictures in their files, what they show as text and data, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+
+import numpy as np
+import pytest
+
+from .conftest import poses_of, refused
+
+TARGET = "Trans(500,149,200) RPY(0,90,0)"
+
+
+def page_data(path):
+    (text,) = re.findall(r'<script id="data" type="application/json">(.*?)</script>', path.read_text(), re.DOTALL)
+    return json.loads(text)
+
+
+@pytest.mark.parametrize(
+    ("name", "start"),
+    [("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("a.pdf", b"%PDF-"), ("a.html", b"<!DOCTYPE html>")],
+)
+def test_a_picture_goes_to_its_file(call, tmp_path, name, start):
+    if not name.endswith("html"):
+        pytest.importorskip("matplotlib")
+    answer = call("plot", "scara", "--q", "10,20,100,30", "--frames", "-o", tmp_path / name)
+    assert (answer.status, answer.out, answer.err) == (0, b"", "")
+    assert (tmp_path / name).read_bytes().startswith(start)
+    assert [file.name for file in tmp_path.iterdir()] == [name]
+
+
+@pytest.mark.parametrize("arguments", [["assembly"], ["planar3r", "--set", "a1=0", "--set", "a2=0", "--set", "a3=0"],
+                                       ["human-body", "--frames"], ["planar3r", "--view", "30,40"]])  # fmt: skip
+@pytest.mark.parametrize("ending", ["png", "html"])
+def test_arms_out_of_the_ordinary_are_drawn_too(call, tmp_path, arguments, ending):
+    pytest.importorskip("matplotlib")
+    answer = call("plot", *arguments, "-o", tmp_path / f"a.{ending}")
+    assert (answer.status, answer.err) == (0, "")
+
+
+def test_the_corners_run_from_the_base_to_the_tool(call):
+    (arm,) = call("plot", "puma560", "--q", "10,20,30,40,50,60", "--json").json["arms"]
+    T = poses_of("puma560", [10, 20, 30, 40, 50, 60])
+    assert np.allclose(arm["points"][-1], T[:3, 3])
+    assert np.allclose(arm["pose"]["matrix"], T)
+    assert arm["points"][0] == [0.0, 0.0, 0.0]
+    assert [joint["type"] for joint in arm["joints"]] == ["revolute"] * 6
+
+
+def test_without_values_home_is_drawn_or_zero_in_the_middle_of_strokes(call):
+    assert call("plot", "puma560", "--json").json["arms"][0]["q"] == [90, 0, 90, 0, 0, 0]
+    assert call("plot", "scara", "--json").json["arms"][0]["q"] == [0, 0, 105, 0]
+
+
+def test_several_configurations_are_one_arm_and_ghosts(call):
+    arms = call("plot", "planar3r", "--q", "30,40,50", "--q", "60,20,10", "-f", "jsonl").jsonl
+    assert [arm["ghost"] for arm in arms] == [False, True]
+    assert [arm["label"] for arm in arms] == ["(30°, 40°, 50°)", "(60°, 20°, 10°)"]
+
+
+def test_every_solution_is_drawn_and_named_by_its_branch(call, tmp_path):
+    solved = call("ik", "puma560", "--pose", TARGET, "--json").json["solutions"]
+    document = call("plot", "puma560", "--ik", TARGET, "--json").json
+    assert document["reachable"]
+    assert [arm["label"] for arm in document["arms"]] == [solution["branch"] for solution in solved]
+    for arm, solution in zip(document["arms"], solved, strict=True):
+        assert np.allclose(arm["q"], solution["q"])
+        assert np.allclose(arm["points"][-1], [500, 149, 200])
+    assert [arm["ghost"] for arm in document["arms"]] == [False] + [True] * (len(solved) - 1)
+    path = tmp_path / "a.html"
+    assert call("plot", "puma560", "--q", "home", "--ik", TARGET, "-o", path).status == 0
+    data = page_data(path)
+    assert data["q"] == [90, 0, 90, 0, 0, 0]
+    assert [ghost["label"] for ghost in data["ghosts"]] == ["", *(solution["branch"] for solution in solved)]
+    assert np.allclose(np.reshape(data["target"], (4, 4))[:3, 3], [500, 149, 200])
+
+
+def test_what_cannot_be_reached_has_status_3_and_its_nearest_is_drawn(call, tmp_path):
+    path = tmp_path / "a.html"
+    answer = call("plot", "planar2r", "--ik", "5,5", "-o", path)
+    assert answer.status == 3
+    assert answer.err == "robokin: --ik: no solution: out of reach\n"
+    data = page_data(path)
+    assert data["ghosts"][0]["label"].startswith("nearest: off by ")
+    assert "out of reach" in data["note"]
+    document = call("plot", "planar2r", "--ik", "5,5", "--json").json
+    assert (document["reachable"], document["reason"]) == (False, "out of reach")
+
+
+@pytest.mark.parametrize("text", ["1.2,0.7", "1.2,0.7,0", "Trans(1.2,0.7,0) Rot(z,30)",
+                                  "[[1,0,0,1.2],[0,1,0,0.7],[0,0,1,0],[0,0,0,1]]"])  # fmt: skip
+def test_a_target_is_an_expression_a_matrix_or_a_place(call, text):
+    document = call("plot", "planar3r", "--ik", text, "--json").json
+    for arm in document["arms"]:
+        assert np.allclose(arm["points"][-1], [1.2, 0.7, 0.0])
+
+
+def test_units_and_parameters_are_taken(call):
+    document = call("plot", "scara", "--set", "a1=100", "--length", "cm", "--angle", "rad", "--json").json
+    assert document["units"] == {"length": "cm", "angle": "rad"}
+    assert np.allclose(document["arms"][0]["points"][-1], [37.5, 0.0, 23.2])
+
+
+def test_csv_has_a_row_for_each_corner(call):
+    answer = call("plot", "planar2r", "--q", "0,90", "-f", "csv")
+    assert answer.columns == ["arm", "corner", "x", "y", "z"]
+    # Both links lie along one axis of the world; the tool's pose is forward kinematics'.
+    assert answer.numbers[:, :2].tolist() == [[1, 1], [1, 2], [1, 3]]
+    assert np.allclose(answer.numbers[-1, 2:], poses_of("planar2r", [0, 90])[:3, 3])
+
+
+def test_the_text_is_a_page_of_80_columns_with_numbered_frames(call):
+    answer = call("plot", "scara", "--q", "20,30,100,0", "--frames")
+    assert (answer.status, answer.err) == (0, "")
+    assert max(map(len, answer.lines)) <= 80
+    assert len(answer.lines) < 36
+    assert {"1", "2", "3", "4"} <= set(re.findall(r"(?<=[⠀-⣿ ])[1-4](?=[⠀-⣿ ]|$)", answer.text, re.MULTILINE))
+    assert "x [mm]" in answer.text
+
+
+def test_values_outside_the_limits_are_drawn_and_said(call, tmp_path):
+    answer = call("plot", "puma560", "--q", "500,0,0,0,0,0", "-o", tmp_path / "a.html")
+    assert answer.status == 0
+    assert "joint 1 (waist) = 500 deg is outside its limits -160 .. 160" in answer.err
+
+
+def test_the_same_command_gives_the_same_bytes(call, tmp_path):
+    pages = []
+    for name in ("a.html", "b.html"):
+        call("plot", "puma560", "--ik", TARGET, "-o", tmp_path / name)
+        pages.append((tmp_path / name).read_bytes())
+    assert pages[0] == pages[1]
+
+
+def test_a_page_and_a_text_need_no_matplotlib(call, tmp_path, monkeypatch):
+    monkeypatch.setattr("robokin.pictures.stills.find_spec", lambda name: None)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert call("plot", "puma560", "-o", tmp_path / "a.html").status == 0
+    assert call("plot", "puma560").status == 0
+    refused(call("plot", "puma560", "-o", tmp_path / "a.png"), "pip install 'robokin[plot]'")
+    assert not (tmp_path / "a.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "fragments"),
+    [
+        (["puma560", "-o", "a.gif"], ["a.gif", ".png, .svg, .pdf or .html"]),
+        (["puma560", "-o", "nowhere/a.html"], ["--output", "nowhere"]),
+        (["puma560", "-o", "a.html", "--json"], ["--output", "--json"]),
+        (["puma560", "-o", "a.html", "-f", "csv"], ["--output", "--format"]),
+        (["puma560", "--q", "-"], ["--q", "found '-'"]),
+        (["puma560", "--q", "1,2"], ["--q", "found 2 values"]),
+        (["puma560", "--q", "hoem"], ["hoem", "did you mean 'home'"]),
+        (["scara", "--q", "0,0,1e12,0"], ["too long", "smaller"]),
+        (["puma560", "--ik", ""], ["--ik", "found nothing"]),
+        (["puma560", "--ik", "1,2"], ["--ik", "found 2 values"]),
+        (["puma560", "--ik", "1,2,3,4"], ["--ik", "found 4 values"]),
+        (["puma560", "--ik", "1,2,up"], ["--ik", "up"]),
+        (["puma560", "--ik", "Trans(1,2)"], ["--ik", "Trans(x, y, z)"]),
+        (["puma560", "--ik", "[[1]]"], ["--ik"]),
+        (["assembly", "--ik", "1,2,3"], ["no joints"]),
+        (["puma560", "--view", "1"], ["--view", "azimuth, elevation"]),
+        (["puma560", "--view", "1,100"], ["--view", "±90"]),
+        (["puma560", "--view", "up,1"], ["--view", "up"]),
+        (["four-bar"], ["mechanism"]),
+        (["puma56"], ["puma56", "puma560"]),
+    ],
+)
+def test_what_is_wrong_gets_a_sentence(call, arguments, fragments, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    answer = call("plot", *arguments)
+    if "1e12" in str(arguments):
+        assert answer.status == 2
+        assert all(fragment in answer.err for fragment in fragments)
+    else:
+        refused(answer, *fragments)
+    assert not list(tmp_path.iterdir())
