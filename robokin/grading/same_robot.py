@@ -42,6 +42,9 @@ STATES = 256
 joint, mostly), so this is far above what occurs."""
 
 
+ZERO, NOT_ZERO = 1e-9, 1e-2
+"""Radians, and parts of the arm's size: less is rounding, more is meant."""
+
 SAME_LINE = 1e-3
 """Metres, and sines: a turn about a joint's axis is off it by no more. It only decides how a match is told."""
 
@@ -125,9 +128,19 @@ class Match:
         return np.where(turning, np.pi - (np.pi - values) % (2.0 * np.pi), values)
 
 
+def near_zero(allowed: Tolerance) -> Near:
+    """What is taken for parallel and for coaxial: what the tolerance cannot tell from it, within bounds.
+
+    Rounding must not tell parallel axes apart where nothing is allowed, and a generous tolerance must not make
+    axes parallel that are not.
+    """
+    angle, part = (float(np.clip(value, ZERO, NOT_ZERO)) for value in (allowed.angle, allowed.position / allowed.size))
+    return Near(angle, part * allowed.size)
+
+
 def match(right: Skeleton, given: Skeleton, allowed: Tolerance, free: frozenset[str]) -> Match:
     """Bring a given skeleton to the right one as far as it goes; both have joints of the same types."""
-    near = Near(allowed.angle, allowed.position)
+    near = near_zero(allowed)
     states = [State((), (), EVERYTHING if "base" in free else NOTHING)]
     for i, (a, b) in enumerate(zip(right.axes, given.axes, strict=True)):
         before = right.axes[i - 1] if i else None
@@ -152,7 +165,7 @@ def _joined(
     state: State, a: Axis, b: Axis, before: Axis | None, sign: int, allowed: Tolerance, zero: bool
 ) -> tuple[State, Gap]:
     """The state after one joint more, and how far its axis is off."""
-    near = Near(allowed.angle, allowed.position)
+    near = near_zero(allowed)
     W = state.motions[-1] if state.motions else np.eye(4)
     W = state.freedom.fit(a, b.moved(W, sign), near) @ W
     gap, back = gap_of(a, b.moved(W, sign), before, near)

@@ -270,9 +270,10 @@ def _base(robot: Robot, starts: list[Array], centres: list[float], scale: float)
         offset = first[:3, 3] - p
         upright = np.linalg.norm(np.cross(first[:3, 2], z)) < PARALLEL
         if upright and np.linalg.norm(offset - (offset @ z) * z) < NOTHING + PARALLEL * scale:
-            at = float(offset @ z + centres[0] * (first[:3, 2] @ z))
-            side = -1.0 if at < -0.5 * HEIGHT * scale and centres[0] > -HEIGHT * scale else 1.0
-            low = min(0.0, side * at - 0.5 * HEIGHT * scale)
+            run, own = float(offset @ z), float(centres[0] * (first[:3, 2] @ z))
+            # An arm whose base has z pointing down goes the other way.
+            side = -1.0 if run < -NOTHING or (run < NOTHING and -HEIGHT * scale < own < 0.0) else 1.0
+            low = min(0.0, side * (run + own) - 0.5 * HEIGHT * scale)
         else:
             low = -RADIUS * scale
     a, b = (p + side * (low - thick * scale) * z for thick in (0.014, 0.0))

@@ -30,7 +30,7 @@ def arm_page(scene: Scene) -> bytes:
     chain = chain_of(robot)
     low, high = scene.bounds()
     home, home_name = default_configuration(robot)
-    poses = {home_name or "zero": home} | dict(robot.poses)
+    poses = {home_name or "default": home} | dict(robot.poses)
     data = {
         "title": scene.title,
         "robot": scene.name,

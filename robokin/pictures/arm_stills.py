@@ -74,13 +74,13 @@ def _draw(figure: Figure, scene: Scene) -> None:
                 color="#111111")  # fmt: skip
     figure.text(0.5, 1.0 - 0.5 / height, subtitle, ha="center", va="top", fontsize=10.5, color="#444444")
     room = (left / width, (FOOT if names else 0.25) / height, inches[0] / width, inches[1] / height)
-    faces = _faces(scene, eye)
+    layers = _faces(scene, eye)
     if names:
         axes = figure.add_axes(room)
-        _plane(axes, scene, faces, eye, names, (low, high))
+        _plane(axes, scene, [*layers[0], *layers[1]], eye, names, (low, high))
     else:
         axes = figure.add_axes(room, projection="3d", computed_zorder=False)
-        _solid(axes, scene, faces, (low, high))
+        _solid(axes, scene, layers, (low, high))
     marks = _names(scene)
     # Points of paper in a metre: exact in a plane, near enough in space.
     points = 72.0 * SIDE / float(np.max(np.ptp(_box(low, high) @ eye[:2].T, axis=0)))
@@ -97,9 +97,10 @@ def _box(low: Array, high: Array) -> Array:
     return np.array([[(low, high)[i >> k & 1][k] for k in range(3)] for i in range(8)])
 
 
-def _faces(scene: Scene, eye: Array) -> list[Face]:
-    """All that is drawn, from the farthest to the nearest; axes of frames in front of what they stand on."""
+def _faces(scene: Scene, eye: Array) -> tuple[list[Face], list[Face]]:
+    """Arms from the farthest part to the nearest, and the axes of frames, in front of all: links would hide them."""
     faces: list[Face] = []
+    axes: list[Face] = []
     ghosts: list[Face] = []
     length = scene.arm.length
     drawn: set[tuple[object, ...]] = set()
@@ -110,12 +111,13 @@ def _faces(scene: Scene, eye: Array) -> list[Face]:
             continue
         faces += arm_faces(scene.arm, frames, eye, None, drawn)
         for mark in scene.marks():
-            faces += frame_faces(frames[mark.body] @ mark.T, length, eye)
+            axes += frame_faces(frames[mark.body] @ mark.T, length, eye)
     if scene.target is not None:
         p = scene.target[:3, 3]
-        faces += frame_faces(scene.target, 1.25 * length, eye) if scene.turned else cross_faces(p, length, eye)
+        axes += frame_faces(scene.target, 1.25 * length, eye) if scene.turned else cross_faces(p, length, eye)
     # In a plane all is at one depth, and the ghosts are behind.
-    return [*ordered(ghosts, eye), *ordered(faces, eye)] if scene.flat else ordered([*ghosts, *faces], eye)
+    arms = [*ordered(ghosts, eye), *ordered(faces, eye)] if scene.flat else ordered([*ghosts, *faces], eye)
+    return arms, ordered(axes, eye)
 
 
 def _paint(scene: Scene, number: int) -> str:
@@ -140,7 +142,7 @@ def _plane(
     axes.add_collection(PolyCollection(corners, facecolors=paints, edgecolors=paints, linewidths=0.4, zorder=3))
 
 
-def _solid(axes: Any, scene: Scene, faces: list[Face], box: tuple[Array, Array]) -> None:
+def _solid(axes: Any, scene: Scene, layers: Sequence[list[Face]], box: tuple[Array, Array]) -> None:
     from matplotlib.ticker import MaxNLocator
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
@@ -163,10 +165,11 @@ def _solid(axes: Any, scene: Scene, faces: list[Face], box: tuple[Array, Array])
         prune = "upper" if axis is axes.xaxis else None
         axis.set_major_locator(MaxNLocator(nbins=max(round(6 * part), 2), steps=[1, 2, 5, 10], prune=prune))
     axes.tick_params(labelsize=8, pad=1)
-    paints = [face.colour for face in faces]
-    drawn = Poly3DCollection([face.corners * scale for face in faces], facecolors=paints, edgecolors=paints,
-                             linewidths=0.4, zorder=3)  # fmt: skip
-    axes.add_collection3d(drawn, autolim=False)
+    for zorder, layer in enumerate(layers, start=3):
+        paints = [face.colour for face in layer]
+        drawn = Poly3DCollection([face.corners * scale for face in layer], facecolors=paints, edgecolors=paints,
+                                 linewidths=0.4, zorder=zorder)  # fmt: skip
+        axes.add_collection3d(drawn, autolim=False)
 
 
 def _names(scene: Scene) -> list[tuple[Array, str, str]]:
@@ -223,7 +226,7 @@ def _label(axes: Any, at: Array, text: str, paint: str, aside: tuple[int, int]) 
         at = np.array(proj_transform(*at, axes.get_proj())[:2])
     # A box and no edge of the letters, so that they stay letters in an .svg.
     look: dict[str, Any] = {"ha": "left" if aside[0] > 0 else "right", "bbox": {
-        "boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.75}}  # fmt: skip
+        "boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.6}}  # fmt: skip
     if paint == "number":
         shape = "circle,pad=0.25" if len(text) < 3 else "round,pad=0.25"
         look = {"ha": "center", "va": "center", "bbox": {"boxstyle": shape, "facecolor": "white",
