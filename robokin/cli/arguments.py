@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from robokin.cli.output.numbers import counted
 from robokin.description.expressions import Scope, evaluate
 from robokin.description.library import load_any
-from robokin.errors import ExpressionError, InputError, did_you_mean
+from robokin.errors import ExpressionError, InputError, did_you_mean, shown
 from robokin.model import Robot, WheeledBase
 from robokin.units import Units
 
@@ -61,7 +61,7 @@ def parse_numbers(text: str, option: str, angles: list[bool], units: Units, what
     parts = split_vector(text)
     if len(parts) != len(angles):
         found = counted(len(parts), "value")
-        raise InputError(f"{option}: found {found} in '{text}', expected {len(angles)}: {what}")
+        raise InputError(f"{option}: found {found} in '{shown(text)}', expected {len(angles)}: {what}")
     scope = Scope(degrees=units.degrees)
     values = np.empty(len(parts))
     for i, (part, angle) in enumerate(zip(parts, angles, strict=True)):
