@@ -96,7 +96,9 @@ def written(figure: Figure, kind: str, *, tight: bool = False) -> bytes:
     out = io.BytesIO()
     metadata = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}
     edges: dict[str, Any] = {"bbox_inches": "tight", "pad_inches": 0.2} if tight else {}
-    figure.savefig(out, format=kind, dpi=RESOLUTION, metadata=metadata[kind], facecolor="white", **edges)
+    # Polygons of different lengths are padded by matplotlib with memory that nobody has written to.
+    with np.errstate(over="ignore", invalid="ignore"):
+        figure.savefig(out, format=kind, dpi=RESOLUTION, metadata=metadata[kind], facecolor="white", **edges)
     return out.getvalue()
 
 
