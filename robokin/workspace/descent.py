@@ -46,11 +46,11 @@ POOL = 2048
 BATCH = 16384
 """Points whose starts are looked up at a time."""
 
-NEAR, FAR = 3, 4
+NEAR, FAR = 3, 2
 """Searches for a point before it is said to be out of reach: from starts near it and from anywhere."""
 
-NEAR_CLOSE, FAR_CLOSE = 8, 16
-"""The same numbers for points that no search reached but one came close to."""
+NEAR_CLOSE = 8
+"""Searches from starts near a point that no search reached but one came close to."""
 
 STEPS = 30
 """Steps of one search: from a start in the same cell five are enough, along a boundary it takes more."""
@@ -89,6 +89,7 @@ class Descent:
         inside = np.zeros(len(points), dtype=bool)
         values = np.zeros((len(self.low), len(points)))
         in_plane = np.flatnonzero(np.sum(off * off, axis=0) <= (REACHED * self.size) ** 2)
+        in_plane = in_plane[~self.starts.beyond(p[:, in_plane])]
         for start in range(0, len(in_plane), BATCH):
             part = in_plane[start : start + BATCH]
             inside[part], values[:, part] = self._sought(p[:, part])
@@ -110,7 +111,7 @@ class Descent:
         close = close[~inside[close]]
         if len(close):
             # The best end may lie on a barrier inside the set that another start goes round.
-            others = self.starts.near(points[:, close], NEAR_CLOSE, FAR_CLOSE)[NEAR:]
+            others = self.starts.near(points[:, close], NEAR_CLOSE, 0)[NEAR:]
             self._search(points, close, others, (STUCK, STEPS), inside, least, values)
         return inside, values
 

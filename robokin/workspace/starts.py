@@ -26,6 +26,10 @@ BEYOND = 0.15
 """Part of its range by which a joint's sample may pass each limit, to be put back to it: much of a set's boundary
 is reached with joints at their limits, which samples of the inside never are."""
 
+ALONE = 2
+"""Cells between a point and the nearest cell with a sample from which on the point is out of reach: a cell that can
+be reached has ten samples on average, and half of all lie on limits, where boundaries are."""
+
 LOOKED_AT = 12
 """Samples of a cell among which the best is chosen."""
 
@@ -58,7 +62,9 @@ class Starts:
         self.order = np.argsort(cells, kind="stable")
         count = np.bincount(cells, minlength=int(np.prod(self.shape)))
         first = np.cumsum(count) - count
-        nearest = _nearest_occupied(count.reshape(self.shape) > 0).reshape(-1)
+        occupied = count.reshape(self.shape) > 0
+        self.far = ~_grown(occupied, ALONE).reshape(-1)
+        nearest = _nearest_occupied(occupied).reshape(-1)
         self.first, self.count = first[nearest], count[nearest]
 
     def near(self, points: Array, near: int, far: int) -> Array:
@@ -79,6 +85,13 @@ class Starts:
         starts = self.q[:, chosen].transpose(1, 0, 2).copy()
         starts[:, 0] = self._within(value - self.offset[chosen])[0]
         return starts
+
+    def beyond(self, points: Array) -> NDArray[np.bool_]:
+        """(m,) whether points (3, m) [m] lie so far from every sample that none can be reached."""
+        seen, _ = self._seen(points)
+        outside = np.any((seen < self.corner[:, None] - ALONE * self.step), axis=0)
+        outside |= np.any(seen > self.corner[:, None] + (np.array(self.shape)[:, None] + ALONE) * self.step, axis=0)
+        return np.asarray(outside | self.far[self._cell(seen)])
 
     def _within(self, joint: Array) -> tuple[Array, Array]:
         """Values of the first joint brought into its limits, and how far outside they were."""
@@ -106,6 +119,17 @@ def _axis(placing: Placing) -> tuple[Array, Array]:
     """A point of the first joint's axis (3,) and a frame (3, 3) whose z it is; the base and nothing else moves it."""
     constant = placing.constants[0]
     return constant[:3, 3], constant[:3, :3]
+
+
+def _grown(occupied: NDArray[np.bool_], by: int) -> NDArray[np.bool_]:
+    """Cells that are occupied or at most `by` cells from one that is."""
+    rows, columns = occupied.shape
+    padded = np.pad(occupied, by)
+    grown = np.zeros_like(occupied)
+    for i in range(2 * by + 1):
+        for j in range(2 * by + 1):
+            grown |= padded[i : i + rows, j : j + columns]
+    return grown
 
 
 def _nearest_occupied(occupied: NDArray[np.bool_]) -> Index:
