@@ -46,7 +46,7 @@ UPRIGHT = 1e-9
 BUDGET = 4
 """Membership is asked for one point in so many samples: it takes some tens of steps, a position takes one."""
 
-MANY = 9
+MANY = 6
 """Joints from which on a step costs so much more that fewer points are asked for."""
 
 HALF = np.pi
