@@ -28,7 +28,7 @@ def configurations(
         raise InputError("--input and --q exclude each other, expected one of them")
     source = input if input is not None else "-" if q == ["-"] else None
     if source is not None:
-        return _stream(source, robot, units), True, False
+        return read_configurations(source, robot, units), True, False
     if not q:
         example = ",".join(["0"] * robot.n)
         raise InputError(
@@ -41,7 +41,8 @@ def configurations(
     return [given], False, len(given) == 1
 
 
-def _stream(source: str, robot: Robot, units: Units) -> Iterator[Array]:
+def read_configurations(source: str, robot: Robot, units: Units) -> Iterator[Array]:
+    """Blocks of configurations (m, n) from a file or from standard input, in the units."""
     from robokin.cli.rows import Columns, open_input, read_rows
 
     columns = Columns(

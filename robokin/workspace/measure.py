@@ -59,7 +59,7 @@ REDUNDANT = "that a point is out of reach is what searches from several starts s
 def measure(space: Space, extent: Extent, samples: int, seed: int, cores: int | None = None) -> Measure:
     """The size of the reachable set; `samples` bounds the configurations or points that are looked at.
 
-    The same for a seed on any number of cores. Raises NotImplementedError for a curved set that more joints reach
+    The same for a seed on any number of cores. Raises ValueError for a curved set that more joints reach
     than it has dimensions (`measurable` tells).
     """
     if not space.moving:
@@ -67,7 +67,7 @@ def measure(space: Space, extent: Extent, samples: int, seed: int, cores: int | 
     if finitely_many(space):
         return coarea_measure(space, samples, seed, cores)
     if not measurable(space):
-        raise NotImplementedError("the size of a curved set that too many joints reach")
+        raise ValueError("the size of a curved set that too many joints reach")
     descent_of(space)
     budget = max(int(samples / (BUDGET * max(1.0, len(space.moving) / MANY) ** 2)), 1)
     if space.axis is None and _symmetric_if_free(space):

@@ -105,7 +105,9 @@ def command(
 
     maker = PoseMaker(model, units, frames)
     if source is not None:
-        alone, blocks = False, _stream(source, model, units)
+        from robokin.cli.configurations import read_configurations
+
+        alone, blocks = False, read_configurations(source, model, units)
     else:
         import numpy as np
 
@@ -146,21 +148,6 @@ def _wrong(sentence: str) -> Exception:
     from robokin.errors import InputError
 
     return InputError(sentence)
-
-
-def _stream(source: str, robot: Robot, units: Units) -> Iterator[Array]:
-    """Blocks of configurations (m, n) from a file or from standard input, in the units."""
-    from robokin.cli.rows import Columns, open_input, read_rows
-
-    columns = Columns(
-        names=tuple(f"q{i}" for i in range(1, robot.n + 1)),
-        aliases=tuple(joint.name for joint in robot.joints),
-        angles=tuple(bool(turns) for turns in robot.revolute),
-        key="q",
-        what=f"one for each joint of {robot.name} ({robot.types})",
-    )
-    with open_input(source) as (stream, name):
-        yield from read_rows(stream, name, columns, units)
 
 
 @dataclass(frozen=True)
