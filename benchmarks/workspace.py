@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -14,6 +15,7 @@ import numpy as np
 
 import robokin
 from benchmarks.machine import best_of, line
+from robokin.model import JointType, Robot
 from robokin.workspace.attitudes import attitudes, group_of
 from robokin.workspace.extremes import extent
 from robokin.workspace.orientation import fractions
@@ -61,6 +63,7 @@ def run() -> None:
     _orientations(cores)
     _extremes()
     _runs()
+    _closed_forms()
     _files()
 
 
@@ -112,6 +115,47 @@ def _runs() -> None:
         if f"{size}_error" in answer:
             remark += f" ± {answer[f'{size}_error'] / answer[size]:.2%}"
         line(f"robokin workspace {name}, s", f"{taken:.2f}", remark)
+
+
+def _without_limits(name: str) -> Robot:
+    """A robot of the library with all its turns free."""
+    robot = robokin.load(name)
+    turning = [row.moves and row.type is JointType.REVOLUTE for row in robot.rows]
+    rows = [
+        replace(row, limits=(-np.inf, np.inf)) if turns else row for row, turns in zip(robot.rows, turning, strict=True)
+    ]
+    return replace(robot, rows=tuple(rows))
+
+
+def _closed_forms() -> None:
+    """Sizes against closed forms, at the usual number of samples and at 16 times as many."""
+    a, b, c = (row.a for row in robokin.load("planar3r").rows)
+    every_angle = np.pi * ((a + b - c) ** 2 - (abs(a - b) + c) ** 2)
+    upper, fore = (row.a for row in robokin.load("anthropomorphic").rows if row.a)
+    shell = 4.0 / 3.0 * np.pi * ((upper + fore) ** 3 - abs(upper - fore) ** 3)
+    # The PUMA's wrist reaches a shell without a cylinder; its tool turns everywhere in the ring that remains of it.
+    offset, tool = 0.14909, 0.05625
+    wrist = np.hypot(np.hypot(0.43307, 0.02032) + 0.4318, offset)
+    ring = 4.0 / 3.0 * np.pi * ((wrist - tool) ** 2 - (offset + tool) ** 2) ** 1.5
+    scara = robokin.load("scara")
+    reach = robokin.analyse_workspace(scara).measure.value
+    cases: list[tuple[str, Robot, bool, float]] = [
+        ("anthropomorphic without limits, volume", _without_limits("anthropomorphic"), False, shell),
+        ("planar3r, every angle", robokin.load("planar3r"), True, every_angle),
+        ("scara, every angle (all that it reaches)", scara, True, reach),
+        ("puma560 without limits, every direction", _without_limits("puma560"), True, ring),
+    ]
+    for name, robot, every, truth in cases:
+        for times, limit in ((1, 0.005), (16, 0.0005)):
+            start = time.perf_counter()
+            found = robokin.analyse_workspace(robot, samples=times * 131072, dextrous=every)
+            taken = time.perf_counter() - start
+            size = found.dexterity.every if found.dexterity is not None else found.measure
+            line(
+                f"{name}, {times} x 131072 samples, bound",
+                f"{size.error / size.value:.4%}",
+                f"limit {limit:.2%}; off by {abs(size.value / truth - 1.0):.4%}; {taken:.1f} s",
+            )
 
 
 def _files() -> None:

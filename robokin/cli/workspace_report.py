@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,14 +22,14 @@ from robokin.pictures.views import View, plane_view, section_view, slice_view
 from robokin.units import Units
 from robokin.workspace.analyse import analyse_workspace
 from robokin.workspace.cells import set_measure
-from robokin.workspace.membership import reachable
+from robokin.workspace.membership import Membership
 from robokin.workspace.region import Region
 from robokin.workspace.result import Workspace
 from robokin.workspace.space import Space, space_of
 
 PLOTS = (".png", ".svg", ".pdf", ".html")
 
-CUT_POINTS = 8
+CUT_POINTS = 16
 """One in so many of the samples is the budget of a cut's area: it has a dimension less than what is sampled."""
 
 LEAST_POINTS = 1024
@@ -113,7 +112,7 @@ def _cut(view: View, arguments: dict[str, Any]) -> Cut:
     low, high = bounds_in(view)
     region = Region("plane", low, high, view.origin, np.stack([view.right, view.up], axis=1))
     budget = max(arguments["samples"] // CUT_POINTS, LEAST_POINTS)
-    area = set_measure(partial(reachable, view.space), region, budget, arguments["seed"], arguments["cores"])
+    area = set_measure(Membership(view.space), region, budget, arguments["seed"], arguments["cores"])
     return Cut(view.name, view.title, view.labels, outline_in(view), area)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from robokin.cli.output.numbers import counted, show
 from robokin.cli.output.tables import WIDTH, heading, pairs, render, table
-from robokin.cli.workspaces import GROUPS, WORDS, Cut, known
+from robokin.cli.workspaces import GROUPS, WORDS, Cut, known, ranges_of
 from robokin.units import Units
 from robokin.workspace.orientation import Place
 from robokin.workspace.result import Dexterity, Measure, Workspace
@@ -29,9 +29,6 @@ SMALL = 1e-6
 
 DECIMALS = {"m": 4, "cm": 2, "mm": 1, "in": 3}
 """Decimals of a bound: what shows in a table is exact to them."""
-
-STILL = 1e-9
-"""A component of a unit vector that changes by less stands still."""
 
 KINDS = {0: "a point", 1: "a curve", 2: "a surface", 3: "a solid"}
 
@@ -179,10 +176,10 @@ def orientations_text(place: Place, units: Units) -> str:
         return GROUPS["curve"]
     if not place.tried:
         return f"{reached} that differ"
+    if len(place.ranges):
+        return f"{100.0 * place.fraction:.1f} % of all angles{ranges_text(place, units)}"
     text = f"{100.0 * reached / place.tried:.1f} % of {place.tried} {WORDS[place.group]}"
-    if place.group == "SO(2)" and 0 < reached < place.tried:
-        text += ranges_text(place, units)
-    elif place.group == "S2" and 0 < reached < place.tried:
+    if place.group == "S2" and 0 < reached < place.tried:
         middle = np.sum(place.rotations[:, :, 2], axis=0)
         if np.linalg.norm(middle) > 1e-6 * reached:
             shown = ", ".join(show(round(float(value), 3)) for value in middle / np.linalg.norm(middle))
@@ -191,21 +188,10 @@ def orientations_text(place: Place, units: Units) -> str:
 
 
 def ranges_text(place: Place, units: Units) -> str:
-    """Which way the tool's x axis (or y, where that stands still) can point, as ranges about an axis of the world."""
-    for i in (0, 1):
-        pointing = place.rotations[:, :, i]
-        still = np.ptp(pointing, axis=0) < STILL
-        if np.sum(still) == 1:
-            break
-    else:
+    """The angles of the tool that can be reached, in words."""
+    angles, words = ranges_of(place)
+    if not angles:
         return ""
-    k = int(np.argmax(still))
-    angles = np.sort(np.arctan2(pointing[:, (k + 2) % 3], pointing[:, (k + 1) % 3]))
-    step = 2.0 * np.pi / place.tried
-    gaps = np.flatnonzero(np.diff(np.append(angles, angles[0] + 2.0 * np.pi)) > 1.5 * step)
-    ranges = []
-    for before, gap in zip(np.roll(gaps, 1), gaps, strict=True):
-        first, last = angles[(before + 1) % len(angles)], angles[gap]
-        last += 2.0 * np.pi * (last < first)
-        ranges.append(f"{first / units.radians:.4g} .. {last / units.radians:.4g}")
-    return f": its {'xy'[i]} axis at {', '.join(ranges)} {units.angle} about {'xyz'[k]}"
+    shown = ", ".join(f"{show(a / units.radians)} .. {show(b / units.radians)}" for a, b in angles)
+    own, about = words.split(" about ")
+    return f": its {own} at {shown} {units.angle} about {about}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,9 @@ GROUPS = {
 }
 """What an orientation is for an arm, by its group."""
 
+
+STILL = 1e-9
+"""A component of a unit vector that changes by less stands still."""
 
 WORDS = {"SO(2)": "angles", "S2": "directions", "SO(3)": "rotations", "curve": "rotations", "finite": "rotations"}
 """What each of them is called in short."""
@@ -148,13 +151,41 @@ def place_record(place: Place, robot: str, units: Units) -> dict[str, Any]:
         "orientation": GROUPS[place.group],
         "orientations": place.tried or None,
         "reached": reached if place.tried or place.group == "finite" else None,
-        "fraction": reached / place.tried if place.tried else None,
+        "fraction": place.fraction if place.tried else None,
     }
+    if place.group == "SO(2)" and place.tried:
+        turning = ranges_of(place)
+        record["ranges"] = [[first / units.radians, last / units.radians] for first, last in turning.angles]
+        record["ranges_of"] = turning.words or None
     if place.group == "S2":
         record["directions"] = (place.rotations[:, :, 2] + 0.0).tolist()
     elif place.group != "curve":
         record["quaternions"] = (quaternion_from_rotation(place.rotations) + 0.0).tolist() if reached else []
     return record
+
+
+class Ranges(NamedTuple):
+    """Ranges of angles [rad], each from its first to its last, and what turns so, in words; nothing where all or none
+    of the angles can be reached."""
+
+    angles: list[tuple[float, float]]
+    words: str
+
+
+def ranges_of(place: Place) -> Ranges:
+    """Which way the tool's x axis (or y, where that stands still) can point, about an axis of the world."""
+    for i in (0, 1):
+        pointing = place.rotations[:, :, i]
+        still = np.ptp(pointing, axis=0) < STILL if len(pointing) else np.zeros(3)
+        if len(place.ranges) and np.sum(still) == 1:
+            break
+    else:
+        return Ranges([], "")
+    k = int(np.argmax(still))
+    ends = place.ranges[:, :, :, i]
+    angles = np.arctan2(ends[:, :, (k + 2) % 3], ends[:, :, (k + 1) % 3])
+    angles[:, 1] += 2.0 * np.pi * (angles[:, 1] < angles[:, 0])
+    return Ranges([(float(a), float(b)) for a, b in angles], f"{'xy'[i]} axis about {'xyz'[k]}")
 
 
 def flat_row(record: dict[str, Any]) -> dict[str, Any]:

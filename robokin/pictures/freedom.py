@@ -25,8 +25,8 @@ SQUARES = 120
 PLACES = 40
 """Squares along the longer side of a plane where orientations are tried for the picture alone."""
 
-FEWER = 4
-"""One in so many of a map's orientations is tried there: colours need no more than 250."""
+FEWER = 2
+"""One in so many of a map's orientations is tried there: colours need no more than 300."""
 
 LEAST = 32
 """Orientations at least."""

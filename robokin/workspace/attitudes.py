@@ -40,13 +40,14 @@ class Attitudes:
     """Orientations to be tried at every place.
 
     group: "SO(2)", "S2" or "SO(3)"; rotations: (k, 3, 3) of the tool in the world; task: what of them counts;
-    spacing: [rad] the side of the part of the group that belongs to each.
+    spacing: [rad] the side of the part of the group that belongs to each; axis: (3,) that of the turns of SO(2).
     """
 
     group: Group
     rotations: Array
     task: Task
     spacing: float
+    axis: Array | None = None
 
 
 def group_of(space: Space) -> Group:
@@ -78,7 +79,7 @@ def attitudes(space: Space, group: Group, count: int, seed: int) -> Attitudes:
         assert axis is not None
         own = joint_frames_of(space.chain, 0.5 * (space.low + space.high)[None])[0, -1, :3, :3]
         angles = 2.0 * np.pi * (np.arange(count) + rng.random()) / count
-        return Attitudes(group, rotation_from_axis_angle(axis, angles) @ own, "pose", 2.0 * np.pi / count)
+        return Attitudes(group, rotation_from_axis_angle(axis, angles) @ own, "pose", 2.0 * np.pi / count, axis)
     turned = rotation_from_quaternion(_unit(rng.normal(size=4)))
     if group == "S2":
         return Attitudes(group, turned @ _pointing(spiral(count)), "approach", float(np.sqrt(4.0 * np.pi / count)))
@@ -86,6 +87,15 @@ def attitudes(space: Space, group: Group, count: int, seed: int) -> Attitudes:
         spacing = float(np.cbrt(8.0 * np.pi**2 / count))
         return Attitudes(group, turned @ rotation_from_quaternion(super_spiral(count)), "pose", spacing)
     raise ValueError(f"no grid of orientations for {group}")
+
+
+def small_turns(tried: Attitudes, rotations: Array) -> Array:
+    """(m, c, 3) the axes in the world about which a small turn of rotations (m, 3, 3) leads to all that are near."""
+    if tried.axis is not None:
+        return np.broadcast_to(tried.axis, (len(rotations), 1, 3))
+    if tried.group == "S2":
+        return np.swapaxes(rotations[:, :, :2], 1, 2)
+    return np.broadcast_to(np.eye(3), (len(rotations), 3, 3))
 
 
 def spiral(count: int) -> Array:

@@ -81,13 +81,22 @@ class Descent:
         """(m,) whether each of the points (m, 3) [m] is reached."""
         return self.reached(points)[0]
 
+    def lacks(self, points: Array) -> Array:
+        """(m, 3) [m] the vectors from the nearest position that was found to points (m, 3): zero where reached, NaN
+        where so far away that none was sought."""
+        inside, q = self.reached(points)
+        away = np.zeros(points.shape)
+        away[~inside] = points[~inside] - self.placing.placed(q[:, ~inside])[0].T
+        return away
+
     def reached(self, points: Array) -> tuple[Flags, Array]:
-        """(m,) whether each of the points (m, 3) [m] is reached, and (n, m) by which values [rad | m]."""
+        """(m,) whether each of the points (m, 3) [m] is reached, and (n, m) by which values [rad | m], the nearest ones
+        where it is not, NaN where none were sought."""
         p = np.ascontiguousarray(points.T)
         off = p - self.centre[:, None]
         off -= self.basis @ (self.basis.T @ off)
         inside = np.zeros(len(points), dtype=bool)
-        values = np.zeros((len(self.low), len(points)))
+        values = np.full((len(self.low), len(points)), np.nan)
         in_plane = np.flatnonzero(np.sum(off * off, axis=0) <= (REACHED * self.size) ** 2)
         in_plane = in_plane[~self.starts.beyond(p[:, in_plane])]
         for start in range(0, len(in_plane), BATCH):

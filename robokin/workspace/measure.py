@@ -20,31 +20,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.model import Robot
-from robokin.workspace.cells import cells_of
-from robokin.workspace.coarea import SCRAMBLINGS, STUDENT, coarea_measure
+from robokin.workspace.cells import Cells, cells_of, points_in, set_measure
+from robokin.workspace.coarea import STUDENT, coarea_measure
 from robokin.workspace.descent import descent_of
 from robokin.workspace.membership import Membership, finitely_many, reachable
 from robokin.workspace.parallel import in_order
-from robokin.workspace.region import Region, region_of
+from robokin.workspace.region import region_of
 from robokin.workspace.result import Extent, Measure
 from robokin.workspace.sampling import moving_chain
-from robokin.workspace.sequence import unit_points
 from robokin.workspace.space import TURN, Space
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+DRAWINGS = 8
+"""Independent drawings of those points, whose differences tell the error: STUDENT goes with so many."""
 
 ARC_SHARE = 4
 """One in so many of the points that may be looked at goes to the remaining arcs."""
-
-EDGE = 0.65
-"""The part of the points that finds the boundary of a section, and what lies within it."""
 
 UPRIGHT = 1e-9
 """How far a unit vector may lean from a coordinate axis and still be taken for it."""
 
 
-BUDGET = 4
-"""Membership is asked for one point in so many samples: it takes some tens of steps, a position takes one."""
+BUDGET = {1: 8, 2: 8, 3: 5}
+"""Membership is asked for one point in so many samples, by the region's coordinates: it takes some tens of steps, a
+position takes one; and a boundary that is a surface needs more points than one that is a curve."""
 
 MANY = 6
 """Joints from which on a step costs so much more that fewer points are asked for."""
@@ -68,12 +69,13 @@ def measure(space: Space, extent: Extent, samples: int, seed: int, cores: int | 
         return coarea_measure(space, samples, seed, cores)
     if not measurable(space):
         raise ValueError("the size of a curved set that too many joints reach")
-    descent_of(space)
-    budget = max(int(samples / (BUDGET * max(1.0, len(space.moving) / MANY) ** 2)), 1)
+    share = samples / max(1.0, len(space.moving) / MANY) ** 1.5
     if space.axis is None and _symmetric_if_free(space):
-        found = _by_freeing(space, extent, budget, seed, cores)
+        found = _by_freeing(space, extent, max(int(share / BUDGET[2]), 1), seed, cores)
     else:
-        found = _in_cells(space, region_of(space, extent), budget, seed, cores)
+        descent_of(space)
+        region = region_of(space, extent)
+        found = set_measure(Membership(space), region, max(int(share / BUDGET[len(region.low)]), 1), seed, cores)
     # What the searches miss of the set is in no bound.
     return replace(found, exact=False)
 
@@ -107,16 +109,6 @@ def structural_length(robot: Robot) -> float:
     return total + float(np.sum(robot.limits[slides, 1] - robot.limits[slides, 0]))
 
 
-def _in_cells(space: Space, region: Region, budget: int, seed: int, cores: int | None) -> Measure:
-    """The size of a reachable set by membership of `budget` points of a region."""
-    inside = Membership(space)
-    if len(region.low) == 3:
-        return cells_of(inside, region, budget, seed, cores)[0]
-    # The boundary of a section is a curve, which a few points tell: most go to the test of all other cells.
-    edge = max(int(EDGE * budget), 1)
-    return cells_of(inside, region, edge, seed, cores, tests=max(budget - edge, 1))[0]
-
-
 def _symmetric_if_free(space: Space) -> bool:
     """Whether the set would be symmetric about the first axis if the first joint, which turns far, had no limits."""
     first = space.moving[0]
@@ -147,36 +139,48 @@ def _by_freeing(space: Space, extent: Extent, samples: int, seed: int, cores: in
     free, wide = _freed(space, extent)
     descent_of(free)
     region = region_of(free, wide)
-    count = max(samples // (ARC_SHARE * SCRAMBLINGS), 1)
-    part = max(samples - count * SCRAMBLINGS, 1)
-    symmetric = _in_cells(free, region, part, seed, cores)
+    count = max(samples // (ARC_SHARE * DRAWINGS), 1)
+    part = max(samples - count * DRAWINGS, 1)
+    symmetric, cells = cells_of(Membership(free), region, part, seed, cores)
     stroke = float(space.high[space.moving[0]] - space.low[space.moving[0]])
-    estimate = partial(_arcs, space, free, region, count, seed)
-    arcs = np.array(list(in_order(estimate, range(SCRAMBLINGS), cores)))
+    arcs = _arcs(space, free, cells, count, seed, cores)
     certain = stroke / TURN
     value = certain * symmetric.value + float(np.mean(arcs))
-    error = certain * symmetric.error + STUDENT * float(np.std(arcs, ddof=1)) / float(np.sqrt(SCRAMBLINGS))
+    error = certain * symmetric.error + STUDENT * float(np.std(arcs, ddof=1)) / float(np.sqrt(DRAWINGS))
+    # Of what lies in cells thought to be empty the remaining arcs have not been looked at.
+    error += (1.0 - certain) * abs(symmetric.value - cells.size)
     method = f"{symmetric.method}; the first joint's limits by points on the arcs that they may cut off"
-    return Measure(value, error, method, symmetric.evaluations + count * SCRAMBLINGS)
+    return Measure(value, error, method, symmetric.evaluations + count * DRAWINGS)
 
 
-def _arcs(space: Space, free: Space, region: Region, count: int, seed: int, scrambling: int) -> float:
-    """One scrambling's estimate of what is reached of the arcs that are not certain."""
+def _arcs(space: Space, free: Space, cells: Cells, count: int, seed: int, cores: int | None) -> Array:
+    """(DRAWINGS,) estimates of what is reached of the arcs that are not certain, from `count` points each."""
+    some = cells.fraction > 0.0
+    low, high = cells.low[some], cells.high[some]
+    if not len(low):
+        return np.zeros(DRAWINGS)
+    rng = np.random.default_rng((seed, 0xA2C5))
+    points = [cells.region.points(points_in(cells.region, low, high, count, rng)[0]) for _ in range(DRAWINGS)]
+    drawn = np.column_stack([np.concatenate(points), rng.random(count * DRAWINGS)])
+    blocks = np.array_split(drawn, max(len(drawn) // Membership.least, 1))
+    hits = np.concatenate(list(in_order(partial(_beyond, space, free), blocks, cores)))
     first = space.moving[0]
+    remaining = 1.0 - float(space.high[first] - space.low[first]) / TURN
+    whole = float(np.sum(cells.region.sizes(low, high)))
+    return np.asarray(whole * remaining * np.mean(hits.reshape(DRAWINGS, count), axis=1))
+
+
+def _beyond(space: Space, free: Space, drawn: Array) -> Flags:
+    """(m,) whether points are reached once they are turned about the first axis onto the arc that is not certain, each
+    by a part of it; drawn: (m, 4), the points of the free space's section [m] and these parts."""
+    first = space.moving[0]
+    inside, q = descent_of(free).reached(drawn[:, :3])
+    points, along = drawn[inside, :3], drawn[inside, 3]
     remaining = TURN - float(space.high[first] - space.low[first])
-    u = unit_points("sobol", len(region.low) + 1, seed, 0, count, count, scrambling)
-    coordinates = region.low[:, None] + (region.high - region.low)[:, None] * u[:-1]
-    # As many points at each distance from the axis as the circle there is long.
-    coordinates[0] = np.sqrt(region.low[0] ** 2 + u[0] * (region.high[0] ** 2 - region.low[0] ** 2))
-    points = region.points(coordinates.T)
-    inside, q = descent_of(free).reached(points)
-    points, q, along = points[inside], q[:, inside], u[-1, inside]
-    turn = space.high[first] + along * remaining - q[0]
+    turn = space.high[first] + along * remaining - q[0, inside]
     foot, z = moving_chain(space).constants[0][:3, 3], moving_chain(space).constants[0][:3, 2]
-    turned = _turned(points - foot, z, turn) + foot
-    hits = np.count_nonzero(reachable(space, turned))
-    whole = float(region.sizes(region.low[None], region.high[None])[0])
-    return whole * remaining / TURN * hits / count
+    inside[inside] = reachable(space, _turned(points - foot, z, turn) + foot)
+    return inside
 
 
 def _turned(v: Array, axis: Array, angle: Array) -> Array:

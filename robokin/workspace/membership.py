@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,11 +38,16 @@ class Membership:
     """
 
     space: Space
-    least: int = 1024
+    least: int = 2048
 
     def __call__(self, points: Array) -> Flags:
         """(m,) whether each of the points (m, 3) [m] is reached."""
         return reachable(self.space, points)
+
+    @property
+    def lacks(self) -> Callable[[Array], Array] | None:
+        """How points (m, 3) [m] lie from the set, (m, 3): what its searches found, where it makes any."""
+        return descent_of(self.space).lacks if self.space.moving and not finitely_many(self.space) else None
 
 
 def solution_count(space: Space, points: ArrayLike) -> NDArray[np.intp]:

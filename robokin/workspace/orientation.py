@@ -7,17 +7,15 @@
   it is where two solutions differ.
 - The standard dextrous set: places with every orientation (J. J. Craig, Introduction to Robotics), tried on a grid.
 
-A grid misses orientations between its points, so that its set is too large. How much so is seen from a grid with
-an eighth of the points: what the two sets differ by, d, is 63 times what is still missing where that falls with the
-square of the number of orientations (turns about one axis), 7 times where it falls with the number (directions)
-and 1.8 times where with its root (a wrist's limits that cut off a corner). So 0.27 d is taken off, and as much is
-the bound. It is the coarse grid that finds the set's boundary; the fine one proves what is within it and is compared
-with the coarse one at places near it.
+A grid misses orientations between its points, so that those which fail first are sought next to the boundary
+(critical.py): first about the grid's own that fail, then again where the set ends now. How fast what they take off
+the set shrinks tells what a third search would. Another, finer grid
+proves what is within the boundary, and what it alone takes off is counted as a doubt of the same size.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import partial
 from math import log
 
@@ -28,16 +26,17 @@ from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.solve import solve_many
 from robokin.kinematics.forward import forward_kinematics
-from robokin.spatial import transform
+from robokin.spatial import rotation_from_axis_angle, transform
 from robokin.workspace.attitudes import ALIKE, Attitudes, Group, attitudes, group_of
-from robokin.workspace.cells import RISK, Cells, Oracle, answers, cells_of, points_in, poisson_limit
+from robokin.workspace.cells import RISK, checked, split_cells
+from robokin.workspace.critical import Every, worst_beyond
 from robokin.workspace.measure import several_measure
 from robokin.workspace.membership import finitely_many, reachable, solution_count
 from robokin.workspace.parallel import in_order
 from robokin.workspace.region import Region, region_of
 from robokin.workspace.result import Dexterity, Extent, Measure
 from robokin.workspace.space import Space
-from robokin.workspace.trials import every, fractions, table, telling_order
+from robokin.workspace.trials import fractions, reached_with, table, telling_order
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -45,8 +44,11 @@ Flags = NDArray[np.bool_]
 USUAL = 131072
 """Samples that the numbers below are for: places and orientations both grow with the root of the samples."""
 
-PLACES: dict[Group, int] = {"SO(2)": 16384, "S2": 32768, "SO(3)": 32768}
-"""Places looked at with the coarse grid."""
+PLACES = {1: 1024, 2: 5000, 3: 8000}
+"""Places looked at for the boundary, by the coordinates of a region."""
+
+WORST = {1: 64, 2: 400, 3: 1500}
+"""Of them places at most where the orientations that fail first are sought, by the same coordinates."""
 
 CERTAIN = 0.0018
 """What the test of the inner and outer places may have missed by chance, as a part of the set's size."""
@@ -54,14 +56,24 @@ CERTAIN = 0.0018
 MOST_TESTS = 20000
 """Places of that test at most, where the set is small."""
 
-ORIENTATIONS: dict[Group, int] = {"SO(2)": 360, "S2": 1000, "SO(3)": 2000}
+ORIENTATIONS: dict[Group, int] = {"SO(2)": 180, "S2": 300, "SO(3)": 600}
 """Orientations at each place."""
 
-COARSE = 8
+TRIED: dict[Group, int] = {"SO(2)": 360, "S2": 1000, "SO(3)": 2000}
+"""Orientations at a place that is asked about."""
+
+HALVINGS = 40
+"""Times that the end of a range of angles is halved: to rounding."""
+
+COARSE = 2
 """The map's grid, and the one that finds the boundary, have one orientation in so many."""
 
-MISSING = 0.27
-"""Half of the greatest part of the two grids' difference that may still be missing: 0.5 / (8^½ - 1)."""
+ABOUT = (1.3, 0.4)
+"""How far about an orientation that fails the worst is sought, in the grid's spacing: at first and once more."""
+
+SHRINKING = 0.5
+"""What further searches may take off is so large a part of what the last did, or as much of it as that was of the one
+before."""
 
 MAP_CELLS = 800
 """Cells of the map where their side is not given."""
@@ -71,9 +83,6 @@ MOST_CELLS = 1_000_000
 
 REDUNDANT = 48
 """An arm with joints to spare is solved for some fifty values of them: for so many times fewer queries."""
-
-DOUBTED = 3000
-"""Places between the two grids' sets at which their difference is counted."""
 
 
 def dexterity(
@@ -96,7 +105,8 @@ def dexterity(
         return Dexterity(group, 0, 0.0, np.zeros((0, 3)), 0.0, np.zeros(0), False, 0.0, reach, several, none)
     redundant = analysis_of(space.robot, "approach" if group == "S2" else "pose").redundancy > 0
     scale = np.sqrt(samples / USUAL / (REDUNDANT if redundant else 1))
-    count = max(int(ORIENTATIONS[group] * scale), 8 * COARSE)
+    # More places tell the set's size better; more orientations only that none between them was overlooked.
+    count = max(int(ORIENTATIONS[group] * min(scale, np.sqrt(scale))), 16 * COARSE)
     fine, coarse = attitudes(space, group, count, seed), attitudes(space, group, count // COARSE, seed)
     region = region_of(space, extent)
     low, high, side = _map_cells(region, voxel)
@@ -178,49 +188,35 @@ def _every_measure(
     for grid in (fine, coarse):
         flags = [np.zeros((0, len(grid.rotations)), dtype=bool)]
         flags += in_order(partial(table, space, grid), blocks, cores)
-        oracles.append(partial(every, space, grid, telling_order(np.concatenate(flags), seed)))
-    all_fine, all_coarse = oracles
-    budget = max(int(PLACES[fine.group] * scale), 256)
+        oracles.append(Every(space, grid, telling_order(np.concatenate(flags), seed)))
+    proof, oracle = oracles
+    d = len(region.low)
+    budget = max(int(PLACES[d] * scale), 256)
+    cells = split_cells(oracle, region, budget, budget, seed, cores)
+    change, spent = [], 0
+    for radius in ABOUT:
+        beyond = region.points(cells.beyond)
+        most = max(int(WORST[d] * min(scale**2, 1.0)), 16)
+        worst = worst_beyond(oracle, beyond, radius * coarse.spacing, most, cores)
+        oracle, proof, before = replace(oracle, worst=worst), replace(proof, worst=worst), cells
+        cells, spent = split_cells(oracle, region, budget, budget, seed, cores), spent + cells.spent
+        change.append(abs(cells.size - before.size))
     whole = float(np.sum(region.sizes(region.low[None], region.high[None])))
-    guess = max(float(np.mean(fraction == 1.0)) if len(fraction) else 0.0, 0.02) * held
+    guess = max(cells.size, 0.02 * held)
     # With more samples this part of the bound shrinks faster than the others, of which it is the greatest.
     more = max(scale, scale**1.5)
     tests = int(min(-log(RISK) * whole / (CERTAIN / more * guess), MOST_TESTS * more))
-    measure, cells = cells_of(all_coarse, region, budget, seed, cores, all_fine, tests)
-    open_, beyond, doubt = _grid_difference(cells, all_fine, all_coarse, int(DOUBTED * scale), (seed, cores))
-    most = max(measure.value - open_, 0.0)
-    least = max(most - 2.0 * MISSING * (open_ + beyond), 0.0)
-    exact = analysis_of(space.robot, fine.task).redundancy == 0
+    test = checked(proof, cells, tests, seed, cores)
+    measure = test.measure
+    # What the finer grid alone takes off is as much as a yet finer one might.
+    overlooked = float(np.sum(test.share[oracle(test.refuted)]))
     return Measure(
-        0.5 * (most + least),
-        0.5 * (most - least) + measure.error + (1.0 + MISSING) * doubt,
-        f"every one of {len(fine.rotations)} orientations, " + measure.method,
-        measure.evaluations,
-        exact,
+        measure.value,
+        measure.error + change[-1] * min(max(SHRINKING, change[-1] / max(change[0], 1e-300)), 1.0) + overlooked,
+        f"every one of {len(fine.rotations)} orientations and of those that fail first, {measure.method}",
+        measure.evaluations + spent,
+        analysis_of(space.robot, fine.task).redundancy == 0,
     )
-
-
-def _grid_difference(
-    cells: Cells, fine: Oracle, coarse: Oracle, count: int, plan: tuple[int, int | None]
-) -> tuple[float, float, float]:
-    """How much larger the coarse grid's set is than the fine one's, in unsettled cells and in settled ones, where
-    that is corrected already, and the bound of the former's error; plan: seed, cores."""
-    seed, cores = plan
-    region, open_ = cells.region, ~cells.settled
-    beyond = max(-cells.missed, 0.0)
-    if not open_.any():
-        return 0.0, beyond, 0.0
-    low, high = cells.low[open_], cells.high[open_]
-    # Cells that are next to nothing need no more places than leave a doubt of a few tenths of what is CERTAIN.
-    size = float(np.sum(region.sizes(low, high)))
-    held = float(region.sizes(cells.low, cells.high) @ cells.fraction)
-    count = max(min(count, int(40.0 * size / (CERTAIN * max(held, size * 1e-3)))), 100)
-    u, _ = points_in(region, low, high, count, np.random.default_rng((seed, 0xD1FF)))
-    by_coarse, by_fine = (answers(oracle, region, cores, u) for oracle in (coarse, fine))
-    more, less = int(np.sum(by_coarse & ~by_fine)), int(np.sum(by_fine & ~by_coarse))
-    part = size / count
-    doubt = poisson_limit(more + less, RISK) - (more + less)
-    return max((more - less) * part, 0.0), beyond, doubt * part
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,7 +224,10 @@ class Place:
     """What is known of one place: point (3,) [m], whether it is reachable, the group of the orientations that it
     may have and how many were tried; rotations (k, 3, 3): those of the tool that it can be reached with (of the
     sphere's group only the third column counts; where the group is "finite", one for each solution that differs).
-    solutions: the number of configurations, None where there are infinitely many."""
+    solutions: the number of configurations, None where there are infinitely many. Of turns about one axis, unless all
+    or none can be reached: ranges (k, 2, 3, 3), the first and the last rotation of each range that can, to rounding,
+    in the direction of a positive turn about that coordinate axis of the world that is most along it; fraction: the
+    part of all that the ranges are, else of those tried."""
 
     point: Array
     reachable: bool
@@ -236,6 +235,8 @@ class Place:
     tried: int
     rotations: Array
     solutions: int | None
+    ranges: Array = field(default_factory=lambda: np.zeros((0, 2, 3, 3)))
+    fraction: float = float("nan")
 
 
 def at_point(space: Space, point: ArrayLike, orientations: int | None = None, seed: int = 0) -> Place:
@@ -250,9 +251,37 @@ def at_point(space: Space, point: ArrayLike, orientations: int | None = None, se
         found = solve_many(space.robot, transform(np.eye(3), p)[None], task="position")[0] if some else None
         turned = [forward_kinematics(space.robot, s.q)[:3, :3] for s in found.solutions] if found else []
         return Place(p, some, group, 0, _different(turned), count if group == "finite" or not some else None)
-    grid = attitudes(space, group, orientations or ORIENTATIONS[group], seed)
+    grid = attitudes(space, group, orientations or TRIED[group], seed)
     flags = table(space, grid, p[None])[0] if some else np.zeros(len(grid.rotations), dtype=bool)
-    return Place(p, some, group, len(flags), grid.rotations[flags], None if some else 0)
+    part = float(np.mean(flags))
+    place = Place(p, some, group, len(flags), grid.rotations[flags], None if some else 0, fraction=part)
+    return _with_ranges(space, grid, flags, place) if group == "SO(2)" and 0.0 < part < 1.0 else place
+
+
+def _with_ranges(space: Space, grid: Attitudes, flags: Flags, place: Place) -> Place:
+    """The place with the ranges of angles that some of a grid's, `flags` (k,), lie in."""
+    assert grid.axis is not None
+    axis = grid.axis * np.sign(grid.axis[np.argmax(np.abs(grid.axis))])
+    step = grid.spacing * float(axis @ grid.axis)
+    # Between an angle that can be reached and the next one that cannot, in either direction.
+    last = np.flatnonzero(flags & ~np.roll(flags, -1))
+    first = np.flatnonzero(flags & ~np.roll(flags, 1))
+    start = grid.rotations[np.concatenate([first, last])]
+    toward = np.concatenate([np.full(len(first), -step), np.full(len(last), step)])
+    low, high = np.zeros(len(start)), np.ones(len(start))
+    points = np.tile(place.point, (len(start), 1))
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        there = reached_with(space, grid.task, points, rotation_from_axis_angle(axis, middle * toward) @ start)
+        low, high = np.where(there, middle, low), np.where(there, high, middle)
+    ends = rotation_from_axis_angle(axis, low * toward) @ start
+    beyond = low * grid.spacing
+    # The range that begins with first[i] ends with the next of last, around the circle.
+    after = np.searchsorted(last, first) % len(last)
+    count = (last[after] - first) % len(flags)
+    spans = count * grid.spacing + beyond[: len(first)] + beyond[len(first) :][after]
+    pairs = np.stack([ends[: len(first)], ends[len(first) :][after]], axis=1)
+    return replace(place, ranges=pairs if step > 0.0 else pairs[:, ::-1], fraction=float(np.sum(spans)) / (2.0 * np.pi))
 
 
 def _different(rotations: list[Array]) -> Array:

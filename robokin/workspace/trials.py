@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.analysis import analysis_of
+from robokin.inverse.analysis import Task, analysis_of
 from robokin.inverse.blocks import BLOCK, solve_block
 from robokin.inverse.verify import within_limits
 from robokin.spatial import transform
@@ -21,13 +21,18 @@ Flags = NDArray[np.bool_]
 
 def reached(space: Space, tried: Attitudes, points: Array, which: NDArray[np.intp]) -> Flags:
     """(m,) whether points (m, 3) [m] are reached with the orientations `which` (m,) within the limits."""
+    return reached_with(space, tried.task, points, tried.rotations[which])
+
+
+def reached_with(space: Space, task: Task, points: Array, rotations: Array) -> Flags:
+    """(m,) whether points (m, 3) [m] are reached with rotations (m, 3, 3) of the tool within the limits."""
     robot = space.robot
-    analysis = analysis_of(robot, tried.task)
+    analysis = analysis_of(robot, task)
     rest = np.clip(0.0, robot.limits[:, 0], robot.limits[:, 1])
     answers = np.zeros(len(points), dtype=bool)
     for start in range(0, len(points), BLOCK):
         part = slice(start, start + BLOCK)
-        T = transform(tried.rotations[which[part]], points[part])
+        T = transform(rotations[part], points[part])
         found = solve_block(analysis, T, robot.limits, None, rest)
         _, inside = within_limits(found.q, robot.revolute, robot.limits, None)
         answers[start + found.index[inside]] = True

@@ -73,12 +73,12 @@ def test_where_the_bounds_are_reached_forward_kinematics_agrees(call):
 
 
 def test_the_answer_is_the_same_bytes_on_one_core_and_on_two(call):
-    one = call("workspace", "planar3r-brac", *FEW, "--cores", "1", "--json")
-    two = call("workspace", "planar3r-brac", *FEW, "--cores", "2", "--json")
+    one = call("workspace", "stanford", *FEW, "--cores", "1", "--json")
+    two = call("workspace", "stanford", *FEW, "--cores", "2", "--json")
     assert one.status == 0
     assert one.out == two.out
-    other = call("workspace", "planar3r-brac", *FEW, "--seed", "7", "--json")
-    assert other.json["area"] != one.json["area"]
+    other = call("workspace", "stanford", *FEW, "--seed", "7", "--json")
+    assert other.json["volume"] != one.json["volume"]
 
 
 def test_the_formats_say_the_same(call):
@@ -184,6 +184,11 @@ def test_a_place_has_its_orientations(call, arm):
     assert document["group"] == "SO(2)"
     assert 0.0 < document["fraction"] < 1.0
     assert document["reached"] == len(document["quaternions"])
+    # At most 10 degrees between the last two links: ranges on both sides, which mirror each other.
+    assert document["ranges_of"] == "x axis about z"
+    (a, b), (c, d) = document["ranges"]
+    assert (a, b) == pytest.approx((-d, -c), abs=1e-7)
+    assert b - a + d - c == pytest.approx(360.0 * document["fraction"], abs=1e-7)
     table = call("workspace", path, "--at", "1.2,0,0")
     assert "its x axis at" in " ".join(table.text.split())
 

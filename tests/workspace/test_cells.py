@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from robokin.workspace.cells import cells_of, poisson_limit, set_measure
+from robokin.workspace.cells import cells_of, checked, poisson_limit, set_measure, split_cells
 from robokin.workspace.region import Region
 
 Array = NDArray[np.float64]
@@ -127,18 +127,71 @@ def test_cells_fill_the_region_and_show_the_set() -> None:
     found, cells = cells_of(ring, SECTION, 20000)
     sizes = SECTION.sizes(cells.low, cells.high)
     assert np.sum(sizes) == pytest.approx(np.pi * 1.15**2 * 2.2)
-    assert float(sizes @ cells.fraction) + cells.missed == pytest.approx(found.value)
-    middle = SECTION.points(0.5 * (cells.low + cells.high))[cells.settled]
-    assert np.mean(ring(middle) == (cells.fraction[cells.settled] == 1.0)) > 0.99
+    assert float(sizes @ cells.fraction) == pytest.approx(cells.size)
+    # The first cells are all alike; of the others the boundary is known to the square of their sides.
+    middle = SECTION.points(0.5 * (cells.low + cells.high))[: cells.settled]
+    assert np.mean(ring(middle) == (cells.fraction[: cells.settled] == 1.0)) > 0.99
+    assert cells.size == pytest.approx(RING, rel=5e-4)
+    assert abs(cells.size - RING) < found.error
+    assert not np.any(ring(SECTION.points(cells.beyond)))
 
 
-def test_a_proof_corrects_what_a_near_oracle_settles() -> None:
+def test_a_test_corrects_what_another_oracle_thought() -> None:
     def rough(p):
         return length(p) < 1.0  # it does not see the hole
 
-    found, cells = cells_of(rough, PLANE, 6000, proof=shell, tests=6000)
-    assert cells.missed < 0.0
-    assert abs(found.value - np.pi * 0.91) <= found.error
+    cells = split_cells(rough, PLANE, 6000, 6000)
+    test = checked(shell, cells, 6000)
+    assert cells.size == pytest.approx(np.pi, rel=1e-3)
+    assert abs(test.measure.value - np.pi * 0.91) <= test.measure.error
+    # What it refutes is in the hole, and stands for its size.
+    off = np.minimum(length(test.refuted) - 0.3, np.abs(length(test.refuted) - 1.0))
+    assert np.all(off <= 1e-3)
+    assert np.sum(test.share) == pytest.approx(np.pi * 0.09, rel=0.3)
+
+
+class Near:
+    """A ball that tells how far points are from it, but for those beyond 1.2."""
+
+    least = 64
+
+    def __call__(self, p: Array) -> NDArray[np.bool_]:
+        return ball(p)
+
+    def lacks(self, p: Array) -> Array:
+        """The way from the ball to points (m, 3)."""
+        away = p - p / np.maximum(length(p), 1.0)[:, None]
+        away[length(p) <= 1.0] = 0.0
+        away[length(p) > 1.2] = np.nan
+        return np.asarray(away)
+
+
+@pytest.mark.parametrize(("region", "truth"), [(PLANE, np.pi), (SECTION, 4.0 / 3.0 * np.pi), (BOX, 4.0 / 3.0 * np.pi)])
+def test_distances_tell_crossings(region: Region, truth: float) -> None:
+    """As good a boundary as by halving, for fewer points."""
+    told, halved = split_cells(Near(), region, 4000, 4000), split_cells(ball, region, 4000, 4000)
+    assert told.size == pytest.approx(truth, rel=1e-2 if region is BOX else 1e-3)
+    assert abs(told.size - truth) <= 2.0 * abs(halved.size - truth)
+    both = [checked(ball, cells, 20000).share.sum() for cells in (told, halved)]
+    assert both[0] <= both[1] + 0.005 * truth
+
+
+@pytest.mark.parametrize("d", [1, 2, 3])
+def test_a_boundary_that_is_flat_is_met_exactly(d: int) -> None:
+    """Each simplex holds of a half space what it should, and the parts of it that are said to be in it."""
+    rng = np.random.default_rng(d)
+    region = Region("box" if d == 3 else "plane" if d == 2 else "line", np.zeros(d), np.ones(d), ORIGIN, E[:, :d])
+    for _ in range(10):
+        normal = rng.normal(size=d)
+        offset = float(normal @ rng.uniform(0.3, 0.7, d))
+
+        def inside(p: Array, normal: Array = normal, offset: float = offset) -> NDArray[np.bool_]:
+            return np.asarray(p[:, :d] @ normal < offset)
+
+        cells = split_cells(inside, region, 3000, 3000)
+        truth = np.mean(rng.random((400_000, d)) @ normal < offset)
+        assert cells.size == pytest.approx(truth, abs=0.004)
+        assert checked(inside, cells, 4000).share.sum() <= 0.002
 
 
 def test_the_limit_of_a_poisson_mean() -> None:

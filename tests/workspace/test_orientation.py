@@ -12,6 +12,7 @@ from robokin.errors import InputError
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_transform, transform
 from robokin.workspace.attitudes import attitudes, group_of, spiral, super_spiral
+from robokin.workspace.critical import Every, worst_beyond
 from robokin.workspace.extremes import extent
 from robokin.workspace.orientation import at_point, dexterity
 from robokin.workspace.result import Dexterity, Measure
@@ -152,7 +153,7 @@ def test_planar_three_links(lengths: tuple[float, float, float], area: float) ->
 def test_the_usual_bound_is_half_a_per_cent() -> None:
     found = dexterity_of(planar(1.0, 0.6, 0.35), 11.9381, 131072, cores=None)
     assert abs(found.every.value - np.pi) <= found.every.error <= 0.005 * np.pi
-    assert found.orientations == 360
+    assert found.orientations == 180
     assert found.group == "SO(2)"
 
 
@@ -165,6 +166,31 @@ def test_puma_tool_tip() -> None:
     assert found.mean == pytest.approx(0.807, abs=0.02)
     assert np.all((found.fraction > 0.0) & (found.fraction <= 1.0))
     assert len(found.points) == len(found.fraction)
+
+
+def test_the_bound_of_sixteen_times_the_samples() -> None:
+    found = dexterity_of(planar(1.0, 0.6, 0.35), 11.9381, 8 * 131072, cores=None)
+    assert abs(found.every.value - np.pi) <= found.every.error <= 0.001 * np.pi
+
+
+def test_the_orientation_that_fails_first() -> None:
+    """Beyond l1 + l2 - l3 the last link must not point to the base, within |l1 - l2| + l3 not away from it."""
+    space = space_of(planar(1.0, 0.6, 0.35))
+    grid = attitudes(space, "SO(2)", 40, 0)
+    oracle = Every(space, grid, np.arange(40))
+    angles = np.linspace(0.0, 6.0, 20)
+    around = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
+    for end, out, pointing in ((1.25, 1.0, -1.0), (0.75, -1.0, 1.0)):
+        # What fails is 4 degrees wide there, and 14 a little further: of 40 turns one fails for sure only there.
+        points, further = (end + 2e-4 * out) * around, (end + 2e-3 * out) * around
+        assert 0 < np.sum(oracle(points)) < 20
+        better = replace(oracle, worst=worst_beyond(oracle, further, 1.3 * grid.spacing, 100, 1))
+        assert len(better.worst.points) == 20
+        assert not np.any(better(points))
+        best = worst_beyond(better, points, 0.4 * grid.spacing, 10, 1)
+        along = np.sum(best.rotations[:, :, 0] * best.points, axis=1) / np.linalg.norm(best.points, axis=1)
+        assert len(along) == 10
+        assert along == pytest.approx(np.full(10, pointing), abs=1e-4)
 
 
 def test_planar_two_links() -> None:
@@ -229,6 +255,19 @@ def test_what_is_known_of_a_place() -> None:
     assert (place.group, place.tried, place.solutions) == ("SO(2)", 90, None)
     # r = 0.949 is between |a1 - a2| + a3 and a1 + a2 - a3: every orientation.
     assert len(place.rotations) == 90
+    # Every range ends where the second joint is stretched or folded: the wrist at l1 + l2 or |l1 - l2| from the base.
+    a, b, c = (row.a for row in robokin.load("planar3r").rows)
+    for point in ([1.5, 0.5, 0.0], [0.6, 0.0, 0.0], [0.3, -0.2, 0.0]):
+        for count in (90, 360):
+            place = at_point(space("planar3r"), point, count)
+            assert len(place.ranges)
+            wrists = place.point - c * place.ranges[:, :, :, 0]
+            ends = np.linalg.norm(wrists, axis=2)
+            assert np.all(np.minimum(np.abs(ends - a - b), np.abs(ends - abs(a - b))) < 1e-7)
+            angles = np.arctan2(place.ranges[:, :, 1, 0], place.ranges[:, :, 0, 0])
+            spans = np.mod(angles[:, 1] - angles[:, 0], 2.0 * np.pi)
+            assert np.sum(spans) == pytest.approx(2.0 * np.pi * place.fraction, abs=1e-9)
+            assert len(place.rotations) == pytest.approx(count * place.fraction, abs=len(spans))
     place = at_point(space("planar3r"), [1.7, 0.0, 0.0], 90)
     assert 0 < len(place.rotations) < 90
     place = at_point(space("puma560"), [4.0, 0.0, 0.0])
