@@ -9,6 +9,7 @@ import tempfile
 import time
 from dataclasses import replace
 from functools import partial
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -100,7 +101,9 @@ def _orientations(cores: int) -> None:
 def _extremes() -> None:
     for name in ("puma560", "panda"):
         space = space_of(robokin.load(name))
-        line(f"{name}, bounds and reach, ms", f"{best_of(partial(extent, space)) * 1e3:.0f}", "on one core")
+        seeds = count()  # the answer for a seed is kept
+        taken = best_of(lambda space=space, seeds=seeds: extent(space, next(seeds)))
+        line(f"{name}, bounds and reach, ms", f"{taken * 1e3:.0f}", "on one core")
 
 
 def _runs() -> None:

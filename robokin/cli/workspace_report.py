@@ -7,23 +7,29 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from robokin.cli.arguments import parse_numbers
 from robokin.cli.output.sink import sink
 from robokin.cli.output.text import csv_records, json_document, json_line, json_list
 from robokin.cli.workspaces import WORDS, Cut, flat_row, workspace_record
 from robokin.errors import InputError, or_list
 from robokin.model import Robot
-from robokin.pictures.compose import arm_line, bounds_in, cloud, outline_in, panel, solid_views
+from robokin.pictures.compose import (
+    arm_line,
+    cloud,
+    outline_in,
+    outline_of,
+    panel,
+    plane_region,
+    rings_about,
+    solid_views,
+)
 from robokin.pictures.freedom import degrees_in
 from robokin.pictures.picture import Panel, Picture
 from robokin.pictures.views import View, plane_view, section_view, slice_view
 from robokin.units import Units
 from robokin.workspace.analyse import analyse_workspace
-from robokin.workspace.cells import set_measure
-from robokin.workspace.membership import Membership
-from robokin.workspace.region import Region
+from robokin.workspace.cells import cells_of
+from robokin.workspace.membership import Membership, finitely_many
 from robokin.workspace.result import Workspace
 from robokin.workspace.space import Space, space_of
 
@@ -109,11 +115,12 @@ def _teller(units: Units) -> Callable[[float], str]:
 
 def _cut(view: View, arguments: dict[str, Any]) -> Cut:
     """What is reachable in a plane, with its area."""
-    low, high = bounds_in(view)
-    region = Region("plane", low, high, view.origin, np.stack([view.right, view.up], axis=1))
     budget = max(arguments["samples"] // CUT_POINTS, LEAST_POINTS)
-    area = set_measure(Membership(view.space), region, budget, arguments["seed"], arguments["cores"])
-    return Cut(view.name, view.title, view.labels, outline_in(view), area)
+    seed, cores = arguments["seed"], arguments["cores"]
+    area, cells = cells_of(Membership(view.space), plane_region(view), budget, seed, cores)
+    # Where the set is known in closed form, or by its radii, its boundary is found without the cells.
+    exact = finitely_many(view.space) or rings_about(view)
+    return Cut(view.name, view.title, view.labels, outline_in(view) if exact else outline_of(cells), area)
 
 
 def plates_of(found: Workspace, views: Sequence[View], units: Units, cores: int | None = None) -> list[str]:
@@ -124,7 +131,7 @@ def plates_of(found: Workspace, views: Sequence[View], units: Units, cores: int 
     for view in views or usual_views(found, units)[:1]:
         shades = shaded_plate(view, found, units, cores)
         words = "\n░ few orientations, ▒ half, ▓ most, █ all" if shades is not None else ""
-        plates.append(f"{view.title}{words}\n{shades or plate(view, units)}")
+        plates.append(f"{view.title}{words}\n{shades or plate(view, found, units)}")
     return plates
 
 

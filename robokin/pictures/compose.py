@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,10 @@ from robokin.model import Robot
 from robokin.pictures.outline import CELLS, Outline, trace
 from robokin.pictures.picture import Cloud, Degrees, Panel
 from robokin.pictures.views import UPRIGHT, View, freed, section_view, slice_view
-from robokin.workspace.membership import finitely_many
+from robokin.workspace.cells import Cells, split_cells
+from robokin.workspace.extremes import extent
+from robokin.workspace.membership import Membership, finitely_many
+from robokin.workspace.region import Region, region_of
 from robokin.workspace.sampling import joint_values, positions
 from robokin.workspace.space import Space, space_of
 
@@ -23,14 +26,17 @@ Array = NDArray[np.float64]
 SHADOW = 1 << 17
 """Configurations that show how large a picture must be, and what a set without a plane looks like."""
 
+LEVEL = 1 << 14
+"""Configurations that show at which level a set is widest."""
+
 MARGIN = 0.03
 """Room about sampled points, as a part of their spread: their bounds are that much short at most."""
 
-COARSE = 64
-"""Cells along the longer side of an outline where each point must be sought for."""
+POINTS = 5000
+"""Points looked at for an outline where each must be sought for."""
 
-FEW_HALVINGS = 6
-"""Bisections of a side of such an outline: to a sixtieth of its cell, which is a twentieth of a line's width."""
+RING_HALVINGS = 12
+"""Bisections of a ring's radius."""
 
 ROUND = 360
 """Corners of a circle."""
@@ -48,7 +54,7 @@ def solid_views(space: Space, say: Callable[[float], str], size: float, section:
 
     `say` writes a length [m] in its unit; slices are at whole multiples of size [m], or finer ones in a small set.
     """
-    p = sampled(space)
+    p = sampled(space, LEVEL)
     turned = section_view(space)
     middle = 0.5 * (p.min(axis=0) + p.max(axis=0))
     level, aside = float(middle[2]), float(middle[1])
@@ -84,12 +90,19 @@ def outline_in(view: View, cells: int | None = None) -> Outline:
         return _rings(view, float(np.max(np.abs([low, high]))))
     if finitely_many(space):
         return trace(view.contains, low, high, cells or CELLS)
-    cells = cells or COARSE
-    p = sampled(space, 8 * SHADOW)
-    if not view.radial:
-        beside = np.abs((p - view.origin) @ np.cross(view.right, view.up))
-        p = p[beside <= 0.5 * float(np.max(high - low)) / cells]
-    return trace(view.contains, low, high, cells, FEW_HALVINGS, view.places(p))
+    known = split_cells(Membership(space), plane_region(view), POINTS, POINTS, cores=None)
+    return outline_of(known, cells)
+
+
+def outline_of(known: Cells, cells: int | None = None) -> Outline:
+    """The outline of a plane set that is known by cells of a plane's region."""
+    return trace(known.contains, known.region.low, known.region.high, cells or CELLS)
+
+
+def plane_region(view: View) -> Region:
+    """The box of a plane that holds the set's shadow on it."""
+    low, high = bounds_in(view)
+    return Region("plane", low, high, view.origin, np.stack([view.right, view.up], axis=1))
 
 
 def rings_about(view: View) -> bool:
@@ -115,7 +128,7 @@ def _rings(view: View, reach: float) -> Outline:
     changes = np.flatnonzero(mask[1:] != mask[:-1])
     within = np.where(mask[changes], changes, changes + 1) * step + 0.5 * step
     without = np.where(mask[changes], changes + 1, changes) * step + 0.5 * step
-    for _ in range(2 * FEW_HALVINGS):
+    for _ in range(RING_HALVINGS):
         middle = 0.5 * (within + without)
         at = inside(middle)
         within, without = np.where(at, middle, within), np.where(at, without, middle)
@@ -128,8 +141,21 @@ def _rings(view: View, reach: float) -> Outline:
 
 def bounds_in(view: View) -> tuple[Array, Array]:
     """Corners (2,), (2,) [m] of a box that holds the set's shadow on a plane."""
-    places = view.places(sampled(view.space))
-    low, high = places.min(axis=0), places.max(axis=0)
+    space = view.space
+    if view.radial:
+        region = region_of(space, extent(space))
+        low, high = region.low, region.high
+        middle = view.places(region.points(np.array([[0.0, 0.0]])))[0, 1]
+        low, high = np.array([low[0], low[1] + middle]), np.array([high[0], high[1] + middle])
+    else:
+        bounds = extent(space)
+        corners = view.places(np.array(list(product(*zip(bounds.low, bounds.high, strict=True)))))
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        if np.min(np.abs(np.abs([*view.right, *view.up]) - 0.5)) < 0.5 - UPRIGHT:
+            # A slanting plane: the box's corners stand out, and samples show how far.
+            places = view.places(sampled(space))
+            room = MARGIN * np.max(np.ptp(places, axis=0))
+            low, high = np.maximum(low, places.min(axis=0) - room), np.minimum(high, places.max(axis=0) + room)
     margin = MARGIN * float(np.max(high - low))
     low, high = low - margin, high + margin
     if view.radial:

@@ -20,9 +20,6 @@ Oracle = Callable[[Array], Mask]
 CELLS = 160
 """Cells of the grid along the longer side: half a millimetre of a picture of a page's width."""
 
-DENSE = 20.0
-"""Known points in a middling cell from which on an empty neighbourhood is outside the set."""
-
 HALVINGS = 10
 """Bisections of a grid's side: the crossing is found to a thousandth of a cell, far below a line's width."""
 
@@ -66,23 +63,16 @@ def trace(
     high: Array,
     cells: int = CELLS,
     halvings: int = HALVINGS,
-    known: Array | None = None,
 ) -> Outline:
-    """The outline of the set of points (m, 2) [m] for which `inside` is true, within the box low, high (2,) [m].
-
-    known: (k, 2) [m] points of the set. Where they lie in all cells about a point of the grid it is not asked about.
-    """
+    """The outline of the set of points (m, 2) [m] for which `inside` is true, within the box low, high (2,) [m]."""
     cell = float(np.max(high - low)) / cells
     counts = np.maximum(np.ceil((high - low) / cell - 1e-9).astype(int), 1) + 3
     # A ring of cells about the box, so that a set that fills it has its boundary on the grid.
     first = 0.5 * (low + high) - 0.5 * (counts - 1) * cell
     x, y = (first[i] + cell * np.arange(counts[i]) for i in range(2))
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
-    surely_in, surely_out = _told(known, first, cell, counts)
-    mask = surely_in.copy()
-    asked = ~surely_in & ~surely_out
-    asked[[0, -1]] = asked[:, [0, -1]] = mask[[0, -1]] = mask[:, [0, -1]] = False
-    mask[asked] = inside(points[asked])
+    mask = np.zeros(tuple(counts), dtype=bool)
+    mask[1:-1, 1:-1] = inside(points[1:-1, 1:-1].reshape(-1, 2)).reshape(tuple(counts - 2))
     if not mask.any():
         return Outline((), cell)
     starts, ends = _segments(inside, points, mask)
@@ -92,23 +82,6 @@ def trace(
     following[place[: len(starts)]] = place[len(starts) :]
     middles = _middles(inside, crossings, crossings[following], cell, halvings)
     return Outline(tuple(_loops(crossings, middles, following)), cell)
-
-
-def _told(known: Array | None, first: Array, cell: float, counts: NDArray[np.int64]) -> tuple[Mask, Mask]:
-    """Which points of a grid are in and which are out, as far as known points of the set tell.
-
-    A point is in where all sixteen cells about it are hit. It is out where none is, if a cell within the set gets so
-    many hits that none is left without.
-    """
-    hits = np.zeros(tuple(counts + 3))
-    if known is not None and len(known):
-        index = np.floor((known - first) / cell).astype(int) + 2
-        index = index[np.all((index >= 0) & (index < counts + 3), axis=1)]
-        np.add.at(hits, (index[:, 0], index[:, 1]), 1.0)
-    about = np.lib.stride_tricks.sliding_window_view(hits > 0.0, (4, 4))
-    dense = bool(np.median(hits[hits > 0.0]) >= DENSE) if np.any(hits) else False
-    every, some = np.all(about, axis=(2, 3)), np.any(about, axis=(2, 3))
-    return np.asarray(every), np.asarray(~some & dense)
 
 
 # The sides of the grid are numbered: 2 v is the side from point v along the first axis, 2 v + 1 along the second.

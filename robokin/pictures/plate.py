@@ -17,15 +17,15 @@ from robokin.workspace.result import Workspace
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-CONFIGURATIONS = 1 << 19
-"""Configurations whose positions fill the dots: some fifty for each."""
+CONFIGURATIONS = 1 << 18
+"""Configurations whose positions fill the dots: some twenty-five for each."""
 
 
-def plate(view: View, units: Units) -> str:
+def plate(view: View, found: Workspace, units: Units) -> str:
     """The reachable set in a plane as lines of text, with axes in the units."""
     low, high = bounds_in(view)
     grid, step = dot_grid(low, high)
-    return _page(braille(_dots(view, grid, step)), view, grid, step, (2, 4), units)
+    return _page(braille(_dots(view, found, grid, step)), view, grid, step, (2, 4), units)
 
 
 def shaded_plate(view: View, found: Workspace, units: Units, cores: int | None = None) -> str | None:
@@ -35,7 +35,7 @@ def shaded_plate(view: View, found: Workspace, units: Units, cores: int | None =
         return None
     low, high = bounds_in(view)
     grid, step = dot_grid(low, high, (1, 2))
-    mask = _dots(view, grid, step).reshape(-1, 2, grid.shape[1]).any(axis=1)
+    mask = _dots(view, found, grid, step).reshape(-1, 2, grid.shape[1]).any(axis=1)
     middles = 0.5 * (grid[0::2] + grid[1::2])
     fraction = np.where(mask, freedom.at(middles.reshape(-1, 2)).reshape(mask.shape), np.nan)
     return _page(shaded(fraction), view, grid, step, (1, 2), units)
@@ -48,9 +48,13 @@ def _page(lines: list[str], view: View, grid: Array, step: float, dots: tuple[in
     return framed(lines, corner, (dots[0] * step * scale, dots[1] * step * scale), labels)
 
 
-def _dots(view: View, grid: Array, step: float) -> Mask:
+def _dots(view: View, found: Workspace, grid: Array, step: float) -> Mask:
     """(rows, columns) which dots of a grid (rows, columns, 2) [m] are in the set."""
-    space = view.space
+    space, cells = view.space, found.cells
+    if cells is not None and (view.radial == cells.region.radial or (not view.radial and found.space.axis is not None)):
+        inside = cells.contains(cells.region.coordinates(view.points(grid.reshape(-1, 2))))
+        inside &= (grid.reshape(-1, 2)[:, 0] >= 0.0) | (not view.radial)
+        return np.asarray(inside.reshape(grid.shape[:2]))
     flat = space.dimension == 3 or (space.dimension == 2 and space.basis is not None)
     if flat and (rings_about(view) or (space.dimension == 3 and not view.radial and not finitely_many(space))):
         return filled(outline_in(view), grid)

@@ -44,9 +44,9 @@ def analyse_workspace(
         raise InputError(f"found sampling '{sampling}', expected {' or '.join(KINDS)}")
     space = space_of(robot)
     bounds = extent(space, seed)
-    notes = []
+    notes, cells = [], None
     if measurable(space):
-        size = measure(space, bounds, samples, seed, cores)
+        size, cells = measure(space, bounds, samples, seed, cores)
     else:
         notes.append(f"the {space.quantity} of a curved set that more joints reach than it has dimensions is not known")
         size = Measure(float("nan"), float("nan"), "not measured", 0)
@@ -67,4 +67,5 @@ def analyse_workspace(
         volume_index=float(size.value / (BALL * length**3)) if solid and length > 0.0 else None,
         dexterity=freedom,
         notes=tuple(notes),
+        cells=cells,
     )

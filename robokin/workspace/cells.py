@@ -58,7 +58,7 @@ MOST_HALVINGS = 24
 """The same where there are few, as in one dimension: to rounding."""
 
 SECTIONS = 8
-"""Parts of an edge whose ends are asked about, all at once, where distances do not tell the crossing as they should."""
+"""Parts of an edge, at most, whose ends are asked about all at once where distances do not tell the crossing."""
 
 METHOD = "membership of points: cells split along the boundary, tested by points at random"
 
@@ -190,20 +190,18 @@ class _Asked:
 # The lattice ----------------------------------------------------------------------------------------------
 
 
-def _outlined(
-    ask: _Asked, region: Region, left: int, budget: int, seed: int
-) -> tuple[_Level, list[tuple[Array, Array, Flags]]]:
-    """The last level, all of whose cells have the boundary within, and the cells settled on the way (low, high and
-    value of each part); left: how many points may be looked at."""
+def _outlined(ask: _Asked, region: Region, left: int, budget: int, seed: int) -> tuple[_Level, list[_Settled]]:
+    """The last level, all of whose cells have the boundary within, and those settled on the way, level by level;
+    left: how many points may be looked at."""
     d = len(region.low)
     sides = region.high - region.low
     edge = float(np.prod(sides) * COARSE / max(budget, COARSE)) ** (1.0 / d)
     shape = np.maximum(np.round(sides / edge), 1).astype(np.int64)
     cells = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), axis=-1).reshape(-1, d).astype(np.int64)
-    settled: list[tuple[Array, Array, Flags]] = []
+    settled: list[_Settled] = []
     level = _Level(region, shape, cells)
     checks = int(CHECKS * left)
-    halvings = HALVINGS if ask.lacks is None else 0
+    each = HALVINGS if ask.lacks is None else SECTIONS - 1
     last = False
     while True:
         # Some cells are looked into as well: what their corners say may not be all.
@@ -213,16 +211,16 @@ def _outlined(
         found = level.look(ask, region.drawn(*level.corners_of(tested), rng))
         open_ = level.cut.copy()
         open_[tested[found != level.first[tested]]] = True
-        more = left - ask.count - (halvings << (d - 1)) * len(level.edges)
+        more = left - ask.count - (each << (d - 1)) * level.untold
         wide = _spread(open_, list(_pairs(level.cells, level.shape)))
         fits = [_new_corners(int(np.sum(part)), d) <= more for part in (wide, open_)]
         if last or not any(fits) or not open_.any() or np.max(level.shape) >= FINEST[d]:
             break
         last = not fits[0]
         split = open_ if last else wide
-        settled.append((*level.corners_of(~split), level.first[~split]))
+        settled.append(_Settled(level, ~split))
         level = level.split(split)
-    settled.append((*level.corners_of(~level.cut), level.first[~level.cut]))
+    settled.append(_Settled(level, ~level.cut))
     return level.kept(level.cut), settled
 
 
@@ -292,6 +290,11 @@ class _Level:
         keys = np.unique(ends[:, 0] * len(self.values) + ends[:, 1])
         return np.stack([keys // len(self.values), keys % len(self.values)], axis=1)
 
+    @property
+    def untold(self) -> int:
+        """How many crossings of edges must be asked for."""
+        return int(np.sum(np.isnan(self._told(*self._ends()))))
+
     def split(self, which: Flags) -> _Level:
         """The next level's: the 2^d parts of some of these cells."""
         cells = (2 * self.cells[which][:, None, :] + _corners(len(self.shape))).reshape(-1, len(self.shape))
@@ -306,17 +309,16 @@ class _Level:
 
     def crossings(self, ask: _Asked, left: int) -> _Crossings:
         """Where the boundary crosses the edges whose ends disagree; left: points that may be asked about."""
-        inner = np.where(self.values[self.edges[:, 0]], self.edges[:, 0], self.edges[:, 1])
-        outer = np.sum(self.edges, axis=1) - inner
-        start, along = self.at(outer), self.at(inner) - self.at(outer)
+        outer, start, along = self._ends()
         part, beyond = self._told(outer, start, along), start.copy()
         open_ = np.flatnonzero(np.isnan(part))
-        if ask.lacks is not None and left >= (SECTIONS - 1) * len(open_):
-            ends = np.arange(1, SECTIONS) / SECTIONS
+        if ask.lacks is not None:
+            sections = min(SECTIONS, max(left // max(len(open_), 1) + 1, 2))
+            ends = np.arange(1, sections) / sections
             u = start[open_, None] + ends[:, None] * along[open_, None]
-            there = np.ones((len(open_), SECTIONS), dtype=bool)
+            there = np.ones((len(open_), sections), dtype=bool)
             there[:, :-1] = ask(u.reshape(-1, u.shape[2])).reshape(u.shape[:2])
-            part[open_] = (np.argmax(there, axis=1) + 0.5) / SECTIONS
+            part[open_] = (np.argmax(there, axis=1) + 0.5) / sections
         else:
             most = HALVINGS if len(self.shape) > 1 else MOST_HALVINGS
             low, high = np.zeros(len(open_)), np.ones(len(open_))
@@ -329,6 +331,13 @@ class _Level:
         keys = self.edges[:, 0] * len(self.values) + self.edges[:, 1]
         return _Crossings(keys, np.where(outer == self.edges[:, 0], part, 1.0 - part), beyond)
 
+    def _ends(self) -> tuple[NDArray[np.intp], Array, Array]:
+        """Of the edges whose ends disagree the outer ends (e,), where they are, the ways to the inner ones (e, d)."""
+        inner = np.where(self.values[self.edges[:, 0]], self.edges[:, 0], self.edges[:, 1])
+        outer = np.sum(self.edges, axis=1) - inner
+        start = self.at(outer)
+        return outer, start, self.at(inner) - start
+
     def _told(self, outer: NDArray[np.intp], start: Array, along: Array) -> Array:
         """(e,) the part of each edge from its outer end `start` (e, d) that is out of the set, as the outer end's
         distance tells: the plane through the nearest point that is square to it. NaN where it does not."""
@@ -336,6 +345,33 @@ class _Level:
         with np.errstate(invalid="ignore", divide="ignore"):
             part = -np.sum(away * away, axis=1) / np.sum(away * ahead, axis=1)
             return np.asarray(np.where((part > 0.0) & (part < 1.0), part, np.nan))
+
+
+class _Settled:
+    """Cells of a level that are not split further: low, high (c, d) their corners [m], values (c,) whether they are in
+    the set; shape (d,) of the whole lattice, keys (c,) their numbers in it."""
+
+    def __init__(self, level: _Level, which: Flags) -> None:
+        self.shape, self.values = level.shape, level.first[which]
+        self.low, self.high = level.corners_of(which)
+        self.keys = _keys(level.cells[which], level.shape)
+
+    def of(self, part: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Which of points, at parts (m, d) of the region's sides, are in these cells, and in which of them."""
+        return _found(_keys(np.floor(part * self.shape).astype(np.int64), self.shape), self.keys)
+
+
+def _keys(cells: Whole, shape: Whole) -> Whole:
+    """(c,) a number for each cell (c, d) of a lattice."""
+    return np.asarray(np.ravel_multi_index(tuple(np.clip(cells, 0, shape - 1).T), tuple(shape)))
+
+
+def _found(wanted: Whole, keys: Whole) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Which of some numbers (m,) are among others (c,), and the place of each of these there."""
+    order = np.argsort(keys)
+    place = np.minimum(np.searchsorted(keys, wanted, sorter=order), max(len(keys) - 1, 0))
+    there = np.flatnonzero(keys[order[place]] == wanted) if len(keys) else np.zeros(0, dtype=np.intp)
+    return there, order[place[there]] if len(keys) else there
 
 
 @dataclass(frozen=True, eq=False)
@@ -362,12 +398,13 @@ class Cells:
     of an edge from a vertex within to the crossing.
     """
 
-    def __init__(
-        self, level: _Level, crossings: _Crossings, settled: list[tuple[Array, Array, Flags]], spent: int
-    ) -> None:
+    def __init__(self, level: _Level, crossings: _Crossings, settled: list[_Settled], spent: int) -> None:
         self.region, self.spent, self.beyond = level.region, spent, crossings.beyond
         self.d = d = len(level.shape)
-        low, high, values = (np.concatenate(parts) for parts in zip(*settled, strict=True))
+        low, high, values = (
+            np.concatenate([getattr(part, name) for part in settled]) for name in ("low", "high", "values")
+        )
+        self.parts, self.cut_shape, self.cut_keys = settled, level.shape, _keys(level.cells, level.shape)
         self.settled = len(values)
         self.cut = level.corners_of(np.ones(len(level.cells), dtype=bool))
         self.low, self.high = np.concatenate([low, self.cut[0]]), np.concatenate([high, self.cut[1]])
@@ -378,6 +415,19 @@ class Cells:
         self.part = crossings.part[place] if len(crossings.keys) else np.zeros(keys.shape)
         self.fraction = np.concatenate([values.astype(np.float64), self._fractions()])
         self.size = float(self.region.sizes(self.low, self.high) @ self.fraction)
+
+    def contains(self, u: Array) -> Flags:
+        """(m,) whether points u: (m, d) of the region are in the set; none beyond it is."""
+        low, high = self.region.low, self.region.high
+        within = np.flatnonzero(np.all((u >= low) & (u <= high), axis=1))
+        part = (u[within] - low) / (high - low)
+        inside = np.zeros(len(u), dtype=bool)
+        for settled in self.parts:
+            there, which = settled.of(part)
+            inside[within[there]] = settled.values[which]
+        there, which = _found(_keys(np.floor(part * self.cut_shape).astype(np.int64), self.cut_shape), self.cut_keys)
+        inside[within[there]] = self._holds(u[within[there]], which)
+        return inside
 
     def guesses(self, tests: int) -> list[_Guess]:
         """What is thought of the cells without and with the boundary, to be tested by so many points in all."""

@@ -16,6 +16,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.workspace.extremes import extent, outermost
 from robokin.workspace.placing import Placing, crossed
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.space import Space
@@ -55,6 +56,13 @@ NEAR_CLOSE = 8
 STEPS = 30
 """Steps of one search: from a start in the same cell five are enough, along a boundary it takes more."""
 
+OUTER, SWEEPS = 4096, 2
+"""Starts that lie between a sampled configuration and one that is sought as far out as it comes, and how often each
+joint is given its best value for that: many joints are hardly ever all stretched by chance."""
+
+MANY, ROOM = 7, 1e-3
+"""From more joints on it is bounds and reach, with some room [size], that tell what need not be sought."""
+
 STEP = 0.6
 """The longest step of one joint [rad | size]."""
 
@@ -73,7 +81,9 @@ class Descent:
         self.centre = space.centre
         self.scale = np.where(self.placing.revolute, 1.0, space.size)[:, None]
         self.lever = self.scale[:, :, None] / space.size
-        self.starts = Starts(self.placing, self.low, self.high, self.full, space.size)
+        self.starts = Starts(self.placing, self.low, self.high, self.full, space.size, _outer(space))
+        # Samples of many joints lie close together; what they leave empty may well be reached.
+        self.extent = extent(space) if len(moving) > MANY else None
         # A joint that makes a whole turn may go round more than once.
         self.box = np.where(self.full, -np.inf, self.low)[:, None], np.where(self.full, np.inf, self.high)[:, None]
 
@@ -98,11 +108,21 @@ class Descent:
         inside = np.zeros(len(points), dtype=bool)
         values = np.full((len(self.low), len(points)), np.nan)
         in_plane = np.flatnonzero(np.sum(off * off, axis=0) <= (REACHED * self.size) ** 2)
-        in_plane = in_plane[~self.starts.beyond(p[:, in_plane])]
+        in_plane = in_plane[~self._beyond(p[:, in_plane])]
         for start in range(0, len(in_plane), BATCH):
             part = in_plane[start : start + BATCH]
             inside[part], values[:, part] = self._sought(p[:, part])
         return inside, values
+
+    def _beyond(self, points: Array) -> Flags:
+        """(m,) whether points (3, m) [m] lie so far from what can be reached that they need not be sought."""
+        if self.extent is None:
+            return self.starts.beyond(points)
+        bounds, room = self.extent, ROOM * self.size
+        away = np.linalg.norm(points - bounds.origin[:, None], axis=0)
+        out = (away > bounds.greatest + room) | (away < bounds.least - room)
+        out |= np.any((points < bounds.low[:, None] - room) | (points > bounds.high[:, None] + room), axis=0)
+        return np.asarray(out)
 
     def _sought(self, points: Array) -> tuple[Flags, Array]:
         """`reached` for points (3, m) of the set's plane, m at most a batch.
@@ -113,15 +133,15 @@ class Descent:
         m = points.shape[1]
         inside, values = np.zeros(m, dtype=bool), np.zeros((len(self.low), m))
         least = np.full(m, np.inf)
-        self._search(points, np.arange(m), self.starts.near(points, NEAR, FAR), (STUCK, STEPS), inside, least, values)
+        starts = self.starts.near(points, NEAR, FAR)
+        self._search(points, np.arange(m), starts, [(STUCK, STEPS)] * (NEAR + FAR), inside, least, values)
         close = np.flatnonzero(~inside & (least <= CLOSE**2))
         if len(close):
-            self._search(points, close, values[None][:, :, close], (STUCK_CLOSE, STEPS_CLOSE), inside, least, values)
-        close = close[~inside[close]]
-        if len(close):
-            # The best end may lie on a barrier inside the set that another start goes round.
+            # The best end goes on; and it may lie on a barrier inside the set that another start goes round.
             others = self.starts.near(points[:, close], NEAR_CLOSE, 0)[NEAR:]
-            self._search(points, close, others, (STUCK, STEPS), inside, least, values)
+            starts = np.concatenate([values[None][:, :, close], others])
+            ends = [(STUCK_CLOSE, STEPS_CLOSE)] + [(STUCK, STEPS)] * len(others)
+            self._search(points, close, starts, ends, inside, least, values)
         return inside, values
 
     def _search(
@@ -129,21 +149,22 @@ class Descent:
         points: Array,
         which: NDArray[np.intp],
         starts: Array,
-        ends: tuple[float, int],
+        ends: list[tuple[float, int]],
         inside: Flags,
         least: Array,
         values: Array,
     ) -> None:
-        """Searches for points[:, which] from each of the starts (k, n, len(which)) in turn, until they are reached."""
-        pool = _Pool(self, points, *ends)
-        for attempt in starts:
+        """Searches for points[:, which] from each of the starts (k, n, len(which)) in turn, until they are reached;
+        ends: what ends each, STUCK and STEPS or others."""
+        pool = _Pool(self, points)
+        for attempt, end in zip(starts, ends, strict=True):
             waiting = np.arange(len(which))
             while len(waiting):
                 waiting = waiting[~inside[which[waiting]]]
                 room = max(POOL - len(pool), 0)
                 if room > POOL // 4:
                     take, waiting = waiting[:room], waiting[room:]
-                    pool.add(which[take], attempt[:, take])
+                    pool.add(which[take], attempt[:, take], *end)
                 if len(waiting):
                     self._note(pool, inside, least, values)
         while len(pool):
@@ -188,11 +209,23 @@ class Descent:
         return dq * self.scale, gain
 
 
+def _outer(space: Space) -> Array:
+    """(n, OUTER) configurations from those of the inside to the outermost ones."""
+    rng = np.random.default_rng(OUTER)
+    directions = rng.normal(size=(OUTER, 3))
+    far = outermost(space, directions / np.linalg.norm(directions, axis=1)[:, None], SWEEPS)
+    moving = list(space.moving)
+    low, high = space.low[moving, None], space.high[moving, None]
+    near = low + (high - low) * rng.random(far.shape)
+    # One in four is as far out as it comes, and a joint may stand anywhere between.
+    return np.asarray(near + (far - near) * np.minimum(4.0 / 3.0 * rng.random(OUTER), 1.0))
+
+
 class _Pool:
     """Searches that go on together, each for its own point and from its own start."""
 
-    def __init__(self, descent: Descent, points: Array, stuck: float, steps: int) -> None:
-        self.descent, self.points, self.stuck, self.steps = descent, points, stuck, steps
+    def __init__(self, descent: Descent, points: Array) -> None:
+        self.descent, self.points = descent, points
         self.which = np.zeros(0, dtype=np.intp)
         self.state: list[Array] = []
 
@@ -200,11 +233,11 @@ class _Pool:
         """How many searches go on."""
         return len(self.which)
 
-    def add(self, which: NDArray[np.intp], q: Array) -> None:
-        """Searches for points `which` from q (n, k)."""
+    def add(self, which: NDArray[np.intp], q: Array, stuck: float, steps: int) -> None:
+        """Searches for points `which` from q (n, k), until they are stuck or have made so many steps."""
         n, k = q.shape
         e, J = np.zeros((3, k)), np.zeros((n, 3, k))
-        new = [q, q, e, J, J, np.full(k, np.inf), np.full(k, 2.0 * MU), np.zeros(k)]
+        new = [q, q, e, J, J, np.full(k, np.inf), np.full(k, 2.0 * MU), np.full(k, float(steps)), np.full(k, stuck)]
         old = self.state or [part[..., :0] for part in new]
         self.state = [np.concatenate(pair, axis=-1) for pair in zip(old, new, strict=True)]
         self.which = np.concatenate([self.which, which])
@@ -221,19 +254,19 @@ class _Pool:
 
     def advance(self) -> tuple[NDArray[np.intp], Array, Array]:
         """A step of every search: the points of those that ended, their squared distances and their values."""
-        q, tried, e, J, H, far, mu, steps = self.state
+        q, tried, e, J, H, far, mu, left, stuck = self.state
         e2, J2, H2 = self.descent._model(self.points.take(self.which, axis=1), tried)
         far2 = np.sum(e2 * e2, axis=0)
         better = far2 < far
         mu *= np.where(better, np.where(far2 < 0.1 * far, 0.1, 0.5), 8.0)
         for old, new in ((q, tried), (e, e2), (J, J2), (H, H2), (far, far2)):
             np.copyto(old, new, where=better)
-        steps += 1.0
+        left -= 1.0
         dq, gain = self.descent._step(e, J, H, far, mu, q)
-        over = (far <= REACHED**2) | (gain <= self.stuck * far) | (steps > self.steps)
+        over = (far <= REACHED**2) | (gain <= stuck * far) | (left < 0.0)
         out = np.flatnonzero(over)
         answer = self.which[out], far[out], q[:, out]
-        self.state = [q, np.clip(q + dq, *self.descent.box), e, J, H, far, mu, steps]
+        self.state = [q, np.clip(q + dq, *self.descent.box), e, J, H, far, mu, left, stuck]
         if len(out):
             self._keep(np.flatnonzero(~over))
         return answer

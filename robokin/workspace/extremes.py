@@ -24,6 +24,7 @@ The sweeps are coordinate descent, whose limit points are stationary (D. P. Bert
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,12 +95,22 @@ class _Box:
     full: NDArray[np.bool_]
 
 
+_kept: WeakKeyDictionary[Space, dict[int, Extent]] = WeakKeyDictionary()
+
+
 def extent(space: Space, seed: int = 0) -> Extent:
     """The bounds of the reachable set along the world's axes, its least and greatest distance from the base's origin.
 
     Each is the best of several local extremes, found to 1e-12 of the arm's size; that a better one is far from
     every start is not proven, only unlikely. Joints that do not move the origin are in the middle of their range.
     """
+    known = _kept.setdefault(space, {})
+    if seed not in known:
+        known[seed] = _extent(space, seed)
+    return known[seed]
+
+
+def _extent(space: Space, seed: int) -> Extent:
     origin = space.robot.base[:3, 3].copy()
     q = np.tile(0.5 * (space.low + space.high), (8, 1))
     if space.moving:
@@ -117,6 +128,20 @@ def extent(space: Space, seed: int = 0) -> Extent:
         q_least=q[6],
         q_greatest=q[7],
     )
+
+
+def outermost(space: Space, directions: Array, sweeps: int, seed: int = 0) -> Array:
+    """(n, m) values [rad | m] of the moving joints that put the origin far out along each of `directions` (m, 3)."""
+    box = _scaled(space)
+    unit = np.where(box.chain.revolute, 1.0, space.size)
+    count = len(directions)
+    q = joint_values(space, "sobol", seed, 0, count, count).T[:, list(space.moving)] / unit
+    goals = _Goals(-directions, np.zeros(count), np.zeros(3))
+    for _ in range(sweeps):
+        _sweep(box, goals, q)
+    values = q * unit
+    low, high, full = (whole[list(space.moving)] for whole in (space.low, space.high, space.full))
+    return np.asarray(np.where(full, low + np.mod(values - low, TURN), np.clip(values, low, high)).T)
 
 
 def _best(space: Space, origin: Array, seed: int) -> Array:

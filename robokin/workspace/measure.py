@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.model import Robot
-from robokin.workspace.cells import Cells, cells_of, points_in, set_measure
+from robokin.workspace.cells import Cells, cells_of, points_in
 from robokin.workspace.coarea import STUDENT, coarea_measure
 from robokin.workspace.descent import descent_of
 from robokin.workspace.membership import Membership, finitely_many, reachable
@@ -43,11 +43,11 @@ UPRIGHT = 1e-9
 """How far a unit vector may lean from a coordinate axis and still be taken for it."""
 
 
-BUDGET = {1: 8, 2: 8, 3: 5}
+BUDGET = {1: 8, 2: 10, 3: 5}
 """Membership is asked for one point in so many samples, by the region's coordinates: it takes some tens of steps, a
 position takes one; and a boundary that is a surface needs more points than one that is a curve."""
 
-MANY = 6
+MANY = 5
 """Joints from which on a step costs so much more that fewer points are asked for."""
 
 HALF = np.pi
@@ -57,27 +57,31 @@ REDUNDANT = "that a point is out of reach is what searches from several starts s
 """What is to be known of sets that more joints reach than they have dimensions."""
 
 
-def measure(space: Space, extent: Extent, samples: int, seed: int, cores: int | None = None) -> Measure:
-    """The size of the reachable set; `samples` bounds the configurations or points that are looked at.
+def measure(
+    space: Space, extent: Extent, samples: int, seed: int, cores: int | None = None
+) -> tuple[Measure, Cells | None]:
+    """The size of the reachable set; `samples` bounds the configurations or points that are looked at. Where points
+    were, with the cells that show it: of a set that only the first joint's limits keep from being symmetric about its
+    axis those of the set without these limits.
 
     The same for a seed on any number of cores. Raises ValueError for a curved set that more joints reach
     than it has dimensions (`measurable` tells).
     """
     if not space.moving:
-        return Measure(0.0, 0.0, "no joint moves the tool's origin", 0)
+        return Measure(0.0, 0.0, "no joint moves the tool's origin", 0), None
     if finitely_many(space):
-        return coarea_measure(space, samples, seed, cores)
+        return coarea_measure(space, samples, seed, cores), None
     if not measurable(space):
         raise ValueError("the size of a curved set that too many joints reach")
     share = samples / max(1.0, len(space.moving) / MANY) ** 1.5
     if space.axis is None and _symmetric_if_free(space):
-        found = _by_freeing(space, extent, max(int(share / BUDGET[2]), 1), seed, cores)
+        found, cells = _by_freeing(space, extent, max(int(share / BUDGET[2]), 1), seed, cores)
     else:
         descent_of(space)
         region = region_of(space, extent)
-        found = set_measure(Membership(space), region, max(int(share / BUDGET[len(region.low)]), 1), seed, cores)
+        found, cells = cells_of(Membership(space), region, max(int(share / BUDGET[len(region.low)]), 1), seed, cores)
     # What the searches miss of the set is in no bound.
-    return replace(found, exact=False)
+    return replace(found, exact=False), cells
 
 
 def measurable(space: Space) -> bool:
@@ -135,7 +139,7 @@ def _freed(space: Space, extent: Extent) -> tuple[Space, Extent]:
     return replace(space, low=low, high=high, full=full, axis=axis), wide
 
 
-def _by_freeing(space: Space, extent: Extent, samples: int, seed: int, cores: int | None) -> Measure:
+def _by_freeing(space: Space, extent: Extent, samples: int, seed: int, cores: int | None) -> tuple[Measure, Cells]:
     free, wide = _freed(space, extent)
     descent_of(free)
     region = region_of(free, wide)
@@ -150,7 +154,7 @@ def _by_freeing(space: Space, extent: Extent, samples: int, seed: int, cores: in
     # Of what lies in cells thought to be empty the remaining arcs have not been looked at.
     error += (1.0 - certain) * abs(symmetric.value - cells.size)
     method = f"{symmetric.method}; the first joint's limits by points on the arcs that they may cut off"
-    return Measure(value, error, method, symmetric.evaluations + count * DRAWINGS)
+    return Measure(value, error, method, symmetric.evaluations + count * DRAWINGS), cells
 
 
 def _arcs(space: Space, free: Space, cells: Cells, count: int, seed: int, cores: int | None) -> Array:

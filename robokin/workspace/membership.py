@@ -38,7 +38,7 @@ class Membership:
     """
 
     space: Space
-    least: int = 2048
+    least: int = 1024
 
     def __call__(self, points: Array) -> Flags:
         """(m,) whether each of the points (m, 3) [m] is reached."""

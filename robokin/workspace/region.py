@@ -42,6 +42,18 @@ class Region:
         """(m, 3) the points [m] of coordinates u: (m, d)."""
         return self.origin + u @ self.directions.T
 
+    def coordinates(self, points: Array) -> Array:
+        """(m, d) the coordinates of points (m, 3) [m]: of their shadow, where they are not in the line or plane."""
+        offset = points - self.origin
+        along = offset @ self.directions
+        if self.kind == "disc":
+            return np.asarray(np.linalg.norm(offset, axis=1)[:, None])
+        if self.kind == "section":
+            height = along[:, 1]
+            aside = offset - height[:, None] * self.directions[:, 1]
+            return np.stack([np.linalg.norm(aside, axis=1), height], axis=1)
+        return np.asarray(along)
+
     def sizes(self, low: Array, high: Array) -> Array:
         """(c,) the length, area or volume of cells with corners low, high: (c, d)."""
         sides = high - low

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robokin.workspace.space import Space
+
+if TYPE_CHECKING:
+    from robokin.workspace.cells import Cells
 
 Array = NDArray[np.float64]
 
@@ -80,7 +84,8 @@ class Workspace:
     space: its joints' box and the set's dimension; samples, seed, sampling: what the answers were made from.
     structural_length [m]: Σ (|a| + |d|) over the links plus the strokes of the sliding joints. length_index:
     that length over the cube root of the volume; volume_index: the volume as a part of the sphere of that
-    radius; both None unless the set has a volume.
+    radius; both None unless the set has a volume. cells: what the size was found with, where points were looked at;
+    if the set is not symmetric about an axis but they are, the first joint's limits do not count in them.
     """
 
     space: Space
@@ -94,3 +99,4 @@ class Workspace:
     volume_index: float | None
     dexterity: Dexterity | None = None
     notes: tuple[str, ...] = field(default=())
+    cells: Cells | None = None

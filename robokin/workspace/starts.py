@@ -37,9 +37,11 @@ TURN = 2.0 * np.pi
 
 
 class Starts:
-    """A table of configurations by cells of what the first joint leaves alone."""
+    """A table of configurations, sampled ones and `more` (n, k), by cells of what the first joint leaves alone."""
 
-    def __init__(self, placing: Placing, low: Array, high: Array, full: NDArray[np.bool_], size: float) -> None:
+    def __init__(
+        self, placing: Placing, low: Array, high: Array, full: NDArray[np.bool_], size: float, more: Array
+    ) -> None:
         self.turns = bool(placing.revolute[0])
         self.low, self.high, self.full, self.size = low, high, full, size
         n = len(low)
@@ -47,6 +49,7 @@ class Starts:
         # Every other sample may come to lie on limits.
         u[:, ::2] = np.clip((1.0 + 2.0 * BEYOND) * u[:, ::2] - BEYOND, 0.0, 1.0)
         q = low[:, None] + (high - low)[:, None] * u
+        q = np.concatenate([q, more], axis=1)
         q[0] = 0.5 * (low[0] + high[0])
         p, _ = placing.placed(q)
         # The first axis is the same at every configuration.

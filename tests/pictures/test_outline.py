@@ -56,19 +56,3 @@ def test_parts_that_touch_at_a_corner_close_their_curves():
 def test_nothing_has_no_outline():
     outline = trace(lambda p: np.zeros(len(p), dtype=bool), *BOX)
     assert (outline.loops, outline.area, outline.pieces) == ((), 0.0, 0)
-
-
-def test_known_points_spare_questions_and_change_nothing(rng):
-    asked = []
-
-    def counted(points):
-        asked.append(len(points))
-        return ring(points)
-
-    known = rng.uniform(-1.0, 1.0, (400_000, 2))
-    plain = trace(counted, *BOX, cells=64)
-    without, asked[:] = sum(asked), []
-    told = trace(counted, *BOX, cells=64, known=known[ring(known)])
-    assert sum(asked) < 0.8 * without
-    assert len(told.loops) == len(plain.loops)
-    assert all(np.array_equal(a, b) for a, b in zip(told.loops, plain.loops, strict=True))
