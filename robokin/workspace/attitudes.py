@@ -65,8 +65,8 @@ def group_of(space: Space) -> Group:
     directions = int(np.max(np.sum(pointing > RANK, axis=1)))
     if directions < 2:
         return "curve"
-    idle = analysis_of(space.robot, "approach").idle
-    rolls = bool(idle) and all(space.full[i] for i in idle)
+    idle = analysis_of(space.arm, "approach").idle
+    rolls = bool(idle) and all(space.full[~space.held][i] for i in idle)
     return "S2" if rank == 2 or rolls else "SO(3)"
 
 
@@ -135,6 +135,7 @@ def _probes(space: Space) -> tuple[Array, Array]:
     turns = space.robot.revolute[:, None]
     linear = np.where(turns, np.cross(z, p - o) / space.size, z)
     J = np.concatenate([linear, np.where(turns, z, 0.0)], axis=2)
+    J[:, space.held] = 0.0
     return np.swapaxes(J, 1, 2), F[:, -1, :3, 2]
 
 

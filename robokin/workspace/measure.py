@@ -94,7 +94,7 @@ def several_measure(space: Space, samples: int, seed: int, cores: int | None = N
 
     For arms whose position leaves only finitely many; raises ValueError for others.
     """
-    if not finitely_many(space) or len(space.moving) < space.robot.n:
+    if not finitely_many(space) or len(space.moving) < space.arm.n:
         raise ValueError("the position leaves infinitely many orientations")
     return coarea_measure(space, samples, seed, cores, several=True)
 

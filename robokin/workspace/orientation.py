@@ -103,7 +103,7 @@ def dexterity(
         several = _few(space, reach, samples, seed, cores) if group == "finite" else _almost_all(reach)
         none = Measure(0.0, 0.0, "too few orientations at every place for all of them", 0)
         return Dexterity(group, 0, 0.0, np.zeros((0, 3)), 0.0, np.zeros(0), False, 0.0, reach, several, none)
-    redundant = analysis_of(space.robot, "approach" if group == "S2" else "pose").redundancy > 0
+    redundant = analysis_of(space.arm, "approach" if group == "S2" else "pose").redundancy > 0
     scale = np.sqrt(samples / USUAL / (REDUNDANT if redundant else 1))
     # More places tell the set's size better; more orientations only that none between them was overlooked.
     count = max(int(ORIENTATIONS[group] * min(scale, np.sqrt(scale))), 16 * COARSE)
@@ -136,9 +136,9 @@ def dexterity(
 
 def _few(space: Space, reach: Measure, samples: int, seed: int, cores: int | None) -> Measure:
     """The size of the lecture's set where a place leaves finitely many orientations."""
-    if not space.robot.revolute.any():
+    if not space.arm.revolute.any():
         return Measure(0.0, 0.0, "sliding joints alone never turn the tool", 0)
-    if finitely_many(space) and len(space.moving) == space.robot.n:
+    if finitely_many(space) and len(space.moving) == space.arm.n:
         return several_measure(space, samples, seed, cores)
     # Joints to spare that cannot turn the tool on the spot: what may be is all that is known.
     half = 0.5 * (reach.value + reach.error)
@@ -215,7 +215,7 @@ def _every_measure(
         measure.error + change[-1] * min(max(SHRINKING, change[-1] / max(change[0], 1e-300)), 1.0) + overlooked,
         f"every one of {len(fine.rotations)} orientations and of those that fail first, {measure.method}",
         measure.evaluations + spent,
-        analysis_of(space.robot, fine.task).redundancy == 0,
+        analysis_of(space.arm, fine.task).redundancy == 0,
     )
 
 
@@ -248,8 +248,8 @@ def at_point(space: Space, point: ArrayLike, orientations: int | None = None, se
     count = int(solution_count(space, p[None])[0]) if len(space.moving) == space.dimension else None
     some = count > 0 if count is not None else bool(reachable(space, p[None])[0])
     if group in ("finite", "curve"):
-        found = solve_many(space.robot, transform(np.eye(3), p)[None], task="position")[0] if some else None
-        turned = [forward_kinematics(space.robot, s.q)[:3, :3] for s in found.solutions] if found else []
+        found = solve_many(space.arm, transform(np.eye(3), p)[None], task="position")[0] if some else None
+        turned = [forward_kinematics(space.arm, s.q)[:3, :3] for s in found.solutions] if found else []
         return Place(p, some, group, 0, _different(turned), count if group == "finite" or not some else None)
     grid = attitudes(space, group, orientations or TRIED[group], seed)
     flags = table(space, grid, p[None])[0] if some else np.zeros(len(grid.rotations), dtype=bool)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from robokin.errors import InputError
 from robokin.kinematics.chain import Chain, exact
 from robokin.kinematics.columns import cos_sin_of_halves
+from robokin.spatial import rotation_transform, translation_transform
 from robokin.workspace.parallel import in_order
 from robokin.workspace.sequence import RANDOM_BLOCK, Kind, grid_sides, unit_points
 from robokin.workspace.space import Space
@@ -184,7 +185,12 @@ def moving_chain(space: Space) -> Chain:
             if i in space.moving:
                 constants.append(C)
             else:
-                constants[-1] = exact(constants[-1] @ C)  # at 0, as good a value as any
+                # A joint that is held has its value; of any other that does not move the origin none matters.
+                middle = 0.5 * (space.low[i] + space.high[i]) + space.chain.offsets[i]
+                z = [0.0, 0.0, 1.0]
+                turns = space.chain.revolute[i]
+                at = rotation_transform(z, middle) if turns else translation_transform(middle * np.array(z))
+                constants[-1] = exact(constants[-1] @ (at if space.held[i] else np.eye(4)) @ C)
         kept = list(space.moving)
         chain = _chains[space] = Chain(np.stack(constants), space.chain.revolute[kept], space.chain.offsets[kept])
     return chain

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,8 @@ from robokin.errors import InputError
 from robokin.inverse.loop import chain_size
 from robokin.inverse.padding import joint_frames_of
 from robokin.kinematics.chain import Chain, chain_of
-from robokin.model import Robot
+from robokin.model import Joint, JointType, Robot
+from robokin.spatial import rotation_transform, translation_transform
 
 Array = NDArray[np.float64]
 
@@ -22,6 +24,9 @@ STILL = 1e-9
 
 RANK = 1e-6
 """Singular values below this part of the greatest are zero: tables are printed to some five digits."""
+
+HELD = 1e-9
+"""A joint with less of a range [rad | size] has one value."""
 
 PROBES = 64
 """Random configurations at which ranks and spans are looked at."""
@@ -51,6 +56,22 @@ class Space:
     size: float
 
     @property
+    def held(self) -> NDArray[np.bool_]:
+        """(n,) which joints' limits leave them one value."""
+        return np.asarray(self.high - self.low <= HELD * np.where(self.robot.revolute, 1.0, self.size))
+
+    @cached_property
+    def arm(self) -> Robot:
+        """The robot with fixed rows for the joints that are held: its joints are those that can be chosen."""
+        held, robot = self.held, self.robot
+        if not held.any():
+            return robot
+        value = dict(zip((id(joint) for joint in robot.joints), 0.5 * (self.low + self.high), strict=True))
+        kept = {id(joint) for joint, stays in zip(robot.joints, held, strict=True) if not stays}
+        rows = [row if not row.moves or id(row) in kept else _fixed(row, value[id(row)]) for row in robot.rows]
+        return replace(robot, rows=tuple(rows), poses={})
+
+    @property
     def quantity(self) -> str:
         """What the size of the reachable set is called."""
         return ("point", "length", "area", "volume")[self.dimension]
@@ -69,6 +90,7 @@ def space_of(robot: Robot) -> Space:
     z, o, p = F[:, :-1, :3, 2], F[:, :-1, :3, 3], F[:, -1, None, :3, 3]
     turns = robot.revolute[:, None]
     J = np.where(turns, np.cross(z, p - o), z * size)
+    J[:, high - low <= HELD * np.where(robot.revolute, 1.0, size)] = 0.0
     moving = tuple(int(i) for i in np.flatnonzero(np.max(np.linalg.norm(J, axis=2), axis=0) > STILL * size))
     if not moving:
         return Space(robot, chain, low, high, full, (), 0, np.zeros((3, 0)), p[0, 0], None, size)
@@ -81,6 +103,19 @@ def space_of(robot: Robot) -> Space:
     first = moving[0]
     axis = F[0, first].copy() if robot.revolute[first] and full[first] and first == 0 else None
     return Space(robot, chain, low, high, full, moving, dimension, basis, points[0].copy(), axis, size)
+
+
+def _fixed(row: Joint, value: float) -> Joint:
+    """A joint that stays at a value [rad | m], as a fixed row."""
+    at = value + row.offset
+    if row.axis is not None:
+        turns = row.type is JointType.REVOLUTE
+        motion = rotation_transform(row.axis, at) if turns else translation_transform(at * row.axis)
+        origin = motion if row.origin is None else row.origin @ motion
+        return replace(row, type=JointType.FIXED, origin=origin, axis=None, offset=0.0, texts=())
+    if row.type is JointType.REVOLUTE:
+        return replace(row, type=JointType.FIXED, theta=row.theta + at, offset=0.0, texts=())
+    return replace(row, type=JointType.FIXED, d=row.d + at, offset=0.0, texts=())
 
 
 def joint_box(robot: Robot) -> tuple[Array, Array, NDArray[np.bool_]]:

@@ -26,7 +26,7 @@ def reached(space: Space, tried: Attitudes, points: Array, which: NDArray[np.int
 
 def reached_with(space: Space, task: Task, points: Array, rotations: Array) -> Flags:
     """(m,) whether points (m, 3) [m] are reached with rotations (m, 3, 3) of the tool within the limits."""
-    robot = space.robot
+    robot = space.arm
     analysis = analysis_of(robot, task)
     rest = np.clip(0.0, robot.limits[:, 0], robot.limits[:, 1])
     answers = np.zeros(len(points), dtype=bool)

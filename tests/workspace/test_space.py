@@ -12,6 +12,7 @@ import robokin
 from robokin.errors import InputError
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_transform, translation_transform
+from robokin.workspace.extremes import extent
 from robokin.workspace.sampling import joint_values, positions
 from robokin.workspace.space import joint_box, space_of
 
@@ -121,3 +122,39 @@ def test_a_space_travels_between_processes():
     again = pickle.loads(pickle.dumps(space))
     assert (again.moving, again.dimension, again.size) == (space.moving, space.dimension, space.size)
     assert np.array_equal(again.low, space.low)
+
+
+@pytest.mark.parametrize("name", ["puma560", "stanford", "planar3r", "ur5e", "viperx300s"])
+def test_a_joint_that_its_limits_hold_is_no_joint(name):
+    """The same set as that of the robot with a fixed row there, which has the same poses."""
+    robot = robokin.load(name)
+    for i in range(robot.n):
+        low, high = np.clip(robot.limits[i], -1.0, 1.0)
+        value = 0.3 * low + 0.7 * high
+        rows = [replace(row, limits=(value, value)) if row is robot.joints[i] else row for row in robot.rows]
+        held = replace(robot, rows=tuple(rows))
+        space = space_of(held)
+        assert list(np.flatnonzero(space.held)) == [i]
+        assert i not in space.moving
+        q = np.random.default_rng(i).uniform(-1.0, 1.0, robot.n)
+        q[i] = value
+        same = robokin.forward_kinematics(space.arm, np.delete(q, i))
+        assert np.allclose(robokin.forward_kinematics(held, q), same, atol=1e-12)
+        fixed = space_of(space.arm)
+        assert (fixed.dimension, len(fixed.moving)) == (space.dimension, len(space.moving))
+        these, those = extent(space), extent(fixed)
+        assert np.allclose(these.high, those.high, atol=1e-8)
+        assert these.q_high[0, i] == pytest.approx(value)
+
+
+def test_a_planar_arm_with_a_held_joint_has_finitely_many_orientations():
+    robot = robokin.load("planar3r")
+    rows = [replace(row, limits=(0.5, 0.5)) if k == 2 else row for k, row in enumerate(robot.rows)]
+    found = robokin.analyse_workspace(replace(robot, rows=tuple(rows)), samples=1 << 13, dextrous=True)
+    a, b, c = (row.a for row in robot.rows)
+    hand = np.hypot(b + c * np.cos(0.5), c * np.sin(0.5))
+    truth = 4.0 * np.pi * a * hand
+    assert abs(found.measure.value - truth) <= found.measure.error < 1e-3 * truth
+    assert found.dexterity.group == "finite"
+    assert found.dexterity.several.value == pytest.approx(found.measure.value, rel=1e-3)
+    assert found.dexterity.every.value == 0.0
