@@ -118,6 +118,8 @@ def dexterity(
     all_of_them = _every_measure(
         space, region, (fine, coarse), middle[there], fraction[there], held, (scale, seed, cores)
     )
+    # It is a part of what can be reached, whose size is often known better.
+    all_of_them = replace(all_of_them, value=min(all_of_them.value, reach.value))
     return Dexterity(
         group,
         count,

@@ -214,6 +214,7 @@ def test_a_scara_has_every_turn_wherever_it_reaches() -> None:
     found = dexterity_of(robot, volume)
     assert np.all(found.fraction == 1.0)
     assert abs(found.every.value - volume) <= found.every.error < 0.1 * volume
+    assert found.every.value <= found.some.value
 
 
 def test_moving_the_base_and_scaling() -> None:
