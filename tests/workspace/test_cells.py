@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from robokin.workspace.cells import cells_of, checked, poisson_limit, set_measure, split_cells
+from robokin.workspace.cells import cells_of, checked, poisson_limit, split_cells
 from robokin.workspace.region import Region
+from robokin.workspace.result import Measure
 
 Array = NDArray[np.float64]
 Oracle = Callable[[Array], NDArray[np.bool_]]
@@ -27,6 +28,11 @@ SECTION = Region("section", np.array([0.0, -1.1]), np.array([1.15, 1.1]), ORIGIN
 
 def length(p: Array) -> Array:
     return np.asarray(np.linalg.norm(p, axis=1))
+
+
+def set_measure(inside: Oracle, region: Region, budget: int, seed: int = 0, cores: int | None = 1) -> Measure:
+    """The size alone."""
+    return cells_of(inside, region, budget, seed, cores)[0]
 
 
 def ball(p: Array) -> NDArray[np.bool_]:
