@@ -5,7 +5,8 @@ is ten, `1:30` is ninety, `no` is false, and a key given twice silently wins. So
 here; whoever knows what is expected at a place reads it. A key given twice, a tag, nesting beyond
 `MAX_DEPTH` and a text (its aliases written out) that is larger than `MAX_SIZE` are refused. The tree is
 built from libyaml's events, which are produced one by one, so that hostile text is refused before it costs
-anything.
+anything. Some libraries refuse deep nesting themselves, and read ahead so far that they do it before the first
+event; `_nests_too_deep` finds whether our own limit came first.
 """
 
 from __future__ import annotations
@@ -31,12 +32,11 @@ CHARACTERS = 16
 NO_TEXT = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufeff\ufffe\uffff]")
 """Characters that YAML refuses: controls, halves of surrogate pairs, and what is no character."""
 
-PROBLEMS = {
-    "mapping values are not allowed": "found ': ' inside a value, expected quotes around it, or a line for each key",
-    "cannot start any token": "found {character} where a value starts, expected {instead}",
-    "tab character": "found a tab, expected spaces: YAML indents with spaces alone",
-}
-"""What YAML says of common mistakes, and what a user needs to hear instead."""
+BEFORE_VALUE = ("", "-", ":", ",", "?", "[", "{")
+"""What stands before a value on its line."""
+
+NO_START = ("@", "`", "%", "|", ">")
+"""Characters that no plain value starts with, wherever a library stops at them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,28 +107,62 @@ def read_tree(text: str, file: str) -> Node:
         line, column = text.count("\n", 0, found.start()) + 1, found.start() - text.rfind("\n", 0, found.start())
         code = f"U+{ord(found[0]):04X}"
         raise Mark(file, line, column).error(f"found the character {code}, which is no text, expected YAML in UTF-8")
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
-        return _Builder(yaml.parse(text, Loader=loader), file).document()
+        return _Builder(_events(text), file).document()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
+        for end in (mark.index, mark.index - 1) if mark else ():
+            if end > 0 and _nests_too_deep(text[:end]):
+                return _Builder(_events(text[:end]), file).document()
         where = Mark(file, mark.line + 1, mark.column + 1) if mark else Mark(file, 1, 1)
         raise where.error(_problem(error, text)) from None
     except yaml.YAMLError as error:
         raise Mark(file, 1, 1).error(f"this is not YAML: {shown(str(error), 200)}") from None
 
 
+def _events(text: str) -> Iterator[Any]:
+    """The events of a text, one by one, from libyaml or from its stand-in in Python."""
+    events: Iterator[Any] = yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    return events
+
+
+def _nests_too_deep(text: str) -> bool:
+    """Whether the part of a text that a library has read without complaint nests deeper than `MAX_DEPTH`.
+
+    A library reads up to 1,024 characters ahead, since all that it has read may turn out to be a key; what it
+    refuses there, nesting beyond a limit of its own or another mistake, hides the events of what stands before.
+    The end of a text ends the reading ahead, so the part before the refused place yields its events (a library
+    may name the place before the refused character or the one after it).
+    """
+    depth = 0
+    try:
+        for event in _events(text):
+            if isinstance(event, yaml.CollectionEndEvent):
+                depth -= 1
+            elif isinstance(event, yaml.CollectionStartEvent):
+                depth += 1
+            if depth + isinstance(event, yaml.ScalarEvent) > MAX_DEPTH:
+                return True
+    except yaml.YAMLError:  # the part ends inside a list, or the place of the mistake is not exact
+        return False
+    return False
+
+
 def _problem(error: yaml.MarkedYAMLError, text: str) -> str:
-    """What is wrong with a text that is no YAML, in words for who wrote it."""
+    """What is wrong with a text that is no YAML, in words for who wrote it.
+
+    Common mistakes are known by the character at which the library stops: its own words change between versions.
+    """
     problem = error.problem or error.context or "it cannot be read"
     mark = error.problem_mark
-    lines = text.splitlines()
-    character = lines[mark.line][mark.column : mark.column + 1] if mark and mark.line < len(lines) else ""
-    for said, sentence in PROBLEMS.items():
-        if said in problem:
-            if character == "\t":
-                return PROBLEMS["tab character"]
-            return sentence.format(character=f"'{shown(character)}'", instead="it in quotes")
+    character = text[mark.index : mark.index + 1] if mark else ""
+    before = text[mark.index - mark.column : mark.index].rstrip(" ")[-1:] if mark else ""
+    if character == ":":
+        return "found ': ' inside a value, expected quotes around it, or a line for each key"
+    if character == "\t":
+        return "found a tab, expected spaces: YAML indents with spaces alone"
+    if character in NO_START and before in BEFORE_VALUE:
+        return f"found '{character}' where a value starts, expected it in quotes"
     expected = "" if "expected" in problem else ", expected quotes around a text with any of : # [ ] { } , & * ! | % @"
     return f"this is not YAML: {problem}{expected}"
 
