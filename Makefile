@@ -4,10 +4,10 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench wheel docs clean
+.PHONY: help demo test lint bench completeness wheel docs clean
 
 help:            ## what can be made
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 12
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
 
 $(VENV)/installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -27,6 +27,9 @@ lint: $(VENV)/installed ## style and types
 
 bench: $(VENV)/installed ## speed, as ratios against peers and limits, in one run
 	$(BIN)/python -m benchmarks
+
+completeness: $(VENV)/installed ## whether all solutions are all, counted; make completeness FULL=1 takes hours
+	FULL=$(FULL) $(BIN)/python -m benchmarks.completeness
 
 wheel: $(VENV)/installed ## build the wheel and run it alone, outside this folder
 	PYTHON=$(BIN)/python tests/wheel.sh

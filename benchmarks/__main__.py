@@ -1,4 +1,4 @@
-"""Runs all benchmarks, or those whose names are given: `python -m benchmarks forward pipes inverse mobility start`."""
+"""Runs all benchmarks, or those whose names are given: `python -m benchmarks forward inverse names start`."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
 # The environment has to be set first.
-from benchmarks import forward, inverse, machine, mobility, pipes, start, workspace  # noqa: E402
+from benchmarks import forward, inverse, machine, mobility, names, nearest, pipes, start, workspace  # noqa: E402
 
 BENCHMARKS = {
     "forward": forward.run,
     "pipes": pipes.run,
     "inverse": inverse.run,
+    "names": names.run,
+    "nearest": nearest.run,
     "workspace": workspace.run,
     "mobility": mobility.run,
     "start": start.run,

@@ -3,31 +3,42 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, cast
 
 import numpy as np
 
-from robokin.cli.output.numbers import counted, show
+from robokin.cli.answer_families import DECIMALS, Families, is_within, joint_names, joints_can_move
+from robokin.cli.answer_verdicts import BLANK, verdict
+from robokin.cli.arguments import joint_factors
+from robokin.cli.held_joints import in_words
+from robokin.cli.output.numbers import show
 from robokin.cli.output.tables import WIDTH, heading, narrow_table, render
 from robokin.inverse.analysis import Analysis, Task, analysis_of
+from robokin.inverse.full_turns import MOST_TURNS, unlimited
+from robokin.inverse.hold import HeldArm, held_arm
 from robokin.inverse.result import Result, Solution
 from robokin.model import Robot
 from robokin.units import Units
 
-DECIMALS = {"mm": 3, "cm": 3, "in": 4, "m": 5, "deg": 3, "rad": 5}
-"""Decimals of a joint value: a hundredth of a millimetre or of a thousandth of a radian."""
-
 
 @dataclass(frozen=True)
 class AnswerTable:
-    """Draws the answers for a robot and a task."""
+    """Draws the answers for a robot and a task.
+
+    `limits` tells whether the joint limits count, `turns` that full turns are listed; `most` is the number that a list
+    is cut to, if it is; `held` are the joints, from 0, that are held, with their values in the units.
+    """
 
     robot: Robot
     units: Units
     task: str
+    limits: bool = True
+    turns: bool = False
+    most: int | None = None
+    held: Mapping[int, float] = field(default_factory=dict)
 
     def head(self) -> bytes:
         """The line above all answers."""
@@ -40,22 +51,13 @@ class AnswerTable:
     def paragraph(self, label: str, result: Result, joints: Sequence[Sequence[float]]) -> bytes:
         """One answer; `label` says which, `joints` are the values of its solutions in the units."""
         shown = self.solutions(result)
-        parts: list[Any] = [label + self.verdict(result)]
+        parts: list[Any] = [label + verdict(result, self.idle, in_words(self.held), self.turns)]
         for drawn in self.drawn(shown, joints, bool(result.solutions)):
             parts += ["", drawn]
         notes = list(self.notes(result, shown))
         if notes:
             parts += ["", *notes]
         return render(*(_wrapped(part) for part in parts), *([""] if label else []))
-
-    def verdict(self, result: Result) -> str:
-        """How many solutions there are, or why none."""
-        if not result.reachable:
-            return f"no solution: {result.reason} ({result.method})"
-        whole = "all there are" if result.complete else "there may be more"
-        if result.families and not result.complete:
-            whole = f"all there are but for the value of {_joints(self.idle)}"
-        return f"{counted(len(result.solutions), 'solution')}, {whole} ({result.method})"
 
     def notes(self, result: Result, shown: Sequence[Solution]) -> Iterator[str]:
         """What is to be said of the rows."""
@@ -74,30 +76,52 @@ class AnswerTable:
             )
         if any(not solution.within_limits for solution in shown):
             yield "! outside the joint limits"
-        yield from self.motions([solution.free for solution in shown])
+        yield from self.motions(result, [solution.free for solution in shown])
+        yield from self.full_turns(result)
+
+    def full_turns(self, result: Result) -> Iterator[str]:
+        """How many solutions there are with full turns, or which joints those leave out."""
+        listed = len(result.solutions)
+        if self.turns and listed and (endless := [i + 1 for i in unlimited(self.robot) if i not in self.held]):
+            verb = "has no limits and is" if len(endless) == 1 else "have no limits and are"
+            yield f"full turns: {joint_names(endless)} {verb} not turned"
+        elif not self.turns and listed != self.most and (count := result.counts.get("turns", listed)) > listed:
+            many = str(count) if count <= listed * MOST_TURNS else f"more than {listed * MOST_TURNS}"
+            yield f"with full turns of joints within the limits {many} solutions: --turns lists them"
 
     @property
     def idle(self) -> list[int]:
         """The joints, from 1, that only move what the task leaves open."""
-        return [i + 1 for i in self.analysis.idle]
+        idle = tuple(i + 1 for i in self.analysis.idle)
+        return list(self.arm.numbers(idle) if self.held else idle)
+
+    @cached_property
+    def arm(self) -> HeldArm:
+        """The arm that is solved for: all of the robot but for the held joints."""
+        factors = joint_factors(self.robot, self.units)
+        return held_arm(self.robot, {joint: value * float(factors[joint]) for joint, value in self.held.items()})
 
     @cached_property
     def analysis(self) -> Analysis:
-        """How the robot is solved for the task."""
-        return analysis_of(self.robot, cast("Task", self.task))
+        """How the arm is solved for the task."""
+        return analysis_of(self.arm.part if self.held else self.robot, cast("Task", self.task))
 
-    def motions(self, free: Sequence[tuple[int, ...]]) -> Iterator[str]:
-        """What is to be said of joints that are free to move, given those of each solution."""
+    def motions(self, result: Result, free: Sequence[tuple[int, ...]]) -> Iterator[str]:
+        """The self-motions in words, given the joints of each solution that are free to move."""
         together = [tuple(i for i in joints if i not in self.idle) for joints in free]
         if any(len(joints) > len(rest) for joints, rest in zip(free, together, strict=True)):
-            yield f"free: {_joints(self.idle)} may have any value; each posture is listed once"
-        if self.analysis.redundancy and any(together):
-            union = sorted({i for joints in together for i in joints})
-            yield f"{_joints(union)} may move together and the hand do what is asked; well spread postures are listed"
+            yield f"free: {joint_names(self.idle)} may have any value; each posture is listed once"
+        written = Families(self.robot, self.units, self.limits)
+        for family in filter(is_within, result.families if result.solutions else ()):
+            yield from written.lines(family, result, self.task)
+        told = [set(family.joints) for family in result.families]
+        untold = {joints for joints in together if joints and not any(known.issuperset(joints) for known in told)}
+        if self.analysis.redundancy and untold:
+            union = sorted({i for joints in untold for i in joints})
+            yield f"self-motion: {joints_can_move(union, self.task)}; well spread postures are listed"
             return
-        for joints in sorted({joints for joints in together if joints}):
-            moving = f"{_joints(joints)} may move" + (" together" if len(joints) > 1 else "")
-            yield f"singular: {moving} there and the hand stand still; one such posture is listed"
+        for joints in sorted(untold):
+            yield f"self-motion: {joints_can_move(joints, self.task)}; one such posture is listed"
 
     def drawn(self, shown: Sequence[Solution], joints: Sequence[Sequence[float]], solved: bool) -> Iterator[Any]:
         """The solutions, a row each; side by side in several tables where a page is too narrow for one."""
@@ -112,8 +136,8 @@ class AnswerTable:
             columns.append((f"q{i + 1}", "right", cells))
         # "shoulder right, elbow up" is a column for the shoulder and one for the elbow.
         words = [_words(solution.branch) for solution in shown]
-        for kind in words[0] if words else ():
-            columns.append((kind, "left", [named[kind] for named in words]))
+        for kind in dict.fromkeys(kind for named in words for kind in named):
+            columns.append((kind, "left", [named.get(kind, "") for named in words]))
         first = max(map(len, ["#", *labels]))
         for group in _pages(columns, WIDTH - first):
             table = narrow_table()
@@ -123,18 +147,6 @@ class AnswerTable:
             for label, *cells in zip(labels, *(cells for _, _, cells in group), strict=True):
                 table.add_row(label, *cells)
             yield table
-
-
-def _joints(numbers: Sequence[int]) -> str:
-    """`q4, q6`, and more than two in a row as `q1 to q7`."""
-    runs: list[list[int]] = []
-    for i in numbers:
-        if runs and i == runs[-1][-1] + 1:
-            runs[-1].append(i)
-        else:
-            runs.append([i])
-    names = [f"q{run[0]} to q{run[-1]}" if len(run) > 2 else ", ".join(f"q{i}" for i in run) for run in runs]
-    return ", ".join(names)
 
 
 def _pages(columns: Sequence[tuple[str, Any, list[str]]], room: int) -> Iterator[list[tuple[str, Any, list[str]]]]:
@@ -152,7 +164,12 @@ def _pages(columns: Sequence[tuple[str, Any, list[str]]], room: int) -> Iterator
 
 
 def _wrapped(part: Any) -> Any:
-    return textwrap.fill(part, WIDTH, break_long_words=False) if isinstance(part, str) else part
+    """A text in lines of a page; further lines of an indented one are indented more."""
+    if not isinstance(part, str):
+        return part
+    margin = len(part) - len(part.lstrip())
+    indent = " " * (margin + 2) if margin else ""
+    return textwrap.fill(part, WIDTH, break_long_words=False, subsequent_indent=indent).replace(BLANK, " ")
 
 
 def _words(branch: str) -> dict[str, str]:

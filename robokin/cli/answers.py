@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.cli.answer_families import Families
 from robokin.cli.arguments import joint_factors
 from robokin.cli.output.text import csv_header, csv_records, json_document, json_line, json_list
 from robokin.cli.records import poses_in
+from robokin.inverse.full_turns import turns_of_limits
 from robokin.inverse.result import BatchResult, Result, Solution
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import CLOSES
@@ -24,13 +26,20 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+TURNED_ROWS = 10_000
+"""Full turns of so many postures are held at a time: with eight postures a target some 50 MB of rows."""
+
+NEAREST = "solved for the nearest pose, within the tolerances"
+"""Why a list of solutions that miss the target by no more than the tolerances is not said to be complete."""
+
 
 @dataclass
 class Answers:
     """Answers to bytes, and how many targets had none.
 
     `tolerances` [m, rad]: within them the nearest pose will do; None asks for exact ones. `arguments` go to
-    the solver; `alone` tells that one target was asked for, by an option; `explain` that its lesson is wanted.
+    the solver; `alone` tells that one target was asked for, by an option; `explain` that its lesson is wanted;
+    `held` are the joints, from 0, that are held, with their values in the units.
     """
 
     robot: Robot
@@ -39,6 +48,7 @@ class Answers:
     arguments: dict[str, Any]
     alone: bool
     explain: bool = False
+    held: Mapping[int, float] = field(default_factory=dict)
     count: int = 0
     unreached: int = 0
 
@@ -58,8 +68,11 @@ class Answers:
 
     def batches(self, blocks: Iterable[Array]) -> Iterator[tuple[Array, BatchResult]]:
         """Each block (m, 4, 4) [m] with its answers."""
-        for T in blocks:
-            yield T, solve_many(self.robot, T, **self.arguments)
+        step = TURNED_ROWS // turns_of_limits(self.robot) + 1 if self.arguments.get("turns") else None
+        for block in blocks:
+            for start in range(0, len(block), step or max(len(block), 1)):
+                T = block[start : start + step] if step else block
+                yield T, solve_many(self.robot, T, motions=self.alone, **self.arguments)
 
     def results(self, blocks: Iterable[Array]) -> Iterator[tuple[Array, Result]]:
         """Each target (4, 4) [m] with its answer."""
@@ -92,18 +105,34 @@ class Answers:
             ]
         if not solutions:
             return result
-        return replace(result, solutions=tuple(solutions), nearest=None, reason=None, complete=False, families=False)
+        return replace(
+            result, solutions=tuple(solutions), complete=False, basis=None, certificate=NEAREST, families=(),
+            reason=None, nearest=None, postures=False, counts={"listed": len(solutions)},
+        )  # fmt: skip
 
     # Plain data -------------------------------------------------------------------------------------------
 
+    @property
+    def families(self) -> Families:
+        """Writes self-motions."""
+        return Families(self.robot, self.units, bool(self.arguments.get("limits", True)))
+
     def record(self, target: Array, result: Result) -> dict[str, Any]:
         """The JSON document of an answer."""
-        record = {
+        record: dict[str, Any] = {
             "robot": self.robot.id,
             "units": self.units.as_record(),
             "target": {"matrix": poses_in(target.copy(), self.units).tolist(), "task": self.task},
+        }
+        if self.held:
+            record["hold"] = {f"q{joint + 1}": value for joint, value in sorted(self.held.items())}
+        record |= {
             "reachable": result.reachable,
             "complete": result.complete,
+            "basis": result.basis,
+            "certificate": result.certificate,
+            "counts": dict(result.counts),
+            "families": [self.families.record(family, result) for family in result.families],
             "method": result.method,
             "reason": result.reason,
             "solutions": [self.solution(solution) for solution in result.solutions],
@@ -135,8 +164,11 @@ class Answers:
         return record
 
     def joints(self, q: Array) -> Any:
-        """Joint values (..., n) in the units."""
-        return (q / joint_factors(self.robot, self.units) + 0.0).tolist()
+        """Joint values (..., n) in the units; of held joints the digits that were asked for."""
+        values = q / joint_factors(self.robot, self.units) + 0.0
+        for joint, value in self.held.items():
+            values[..., joint] = np.where(np.isnan(values[..., joint]), np.nan, value)
+        return values.tolist()
 
     # Formats ----------------------------------------------------------------------------------------------
 
@@ -226,7 +258,9 @@ class Answers:
         """A page, or a heading and a paragraph for each target."""
         from robokin.cli.answer_tables import AnswerTable
 
-        drawn = AnswerTable(self.robot, self.units, self.task)
+        limits, turns = bool(self.arguments.get("limits", True)), bool(self.arguments.get("turns", False))
+        most = self.arguments.get("most")
+        drawn = AnswerTable(self.robot, self.units, self.task, limits, turns, most, self.held)
         shown = self.joints
         head = drawn.head()
         for target, result in self.results(blocks):

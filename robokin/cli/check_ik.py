@@ -15,14 +15,15 @@ from robokin.cli.check_poses import Answer, no_number, pose_reader, pose_value
 from robokin.cli.check_rows import BLANK, IDS, NOT_A_NUMBER, STUDENTS, NoAnswerError, Row, Sheet, read_sheet, sized
 from robokin.cli.checks import PASS, Item
 from robokin.cli.output.numbers import counted, show
+from robokin.cli.target_rows import CLEAN
 from robokin.cli.targets import Target
 from robokin.errors import InputError
-from robokin.grading.configurations import OUTSIDE, Reached, SetMark, mark_set, reached, solutions_near
+from robokin.grading.configurations import OUTSIDE, Reached, SetMark, countable, mark_set, reached, solutions_near
 from robokin.grading.tolerance import Tolerance
 from robokin.inverse.analysis import Task
-from robokin.inverse.solve import ROTATION
 from robokin.model import Robot
 from robokin.spatial import nearest_rotation, rotation_error, transform
+from robokin.spatial.rotations import DIGITS_LOST
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -156,7 +157,7 @@ class InverseCheck:
         result = solutions_near(self.robot, target.T, self.allowed, task_of(target), self.limits)
         status = EXISTS if result.reachable else PASS
         count = len(result.solutions)
-        known = result.complete or result.families
+        known = countable(result)
         detail = (
             f"there {'is' if count == 1 else 'are'} {counted(count, 'solution')}" if known else "there are solutions"
         )
@@ -284,8 +285,8 @@ def target_of(answer: Answer, line: int | None = None) -> Target:
     """A pose as a target. Raises NoAnswerError for a rotation that is none."""
     R = answer.T[:3, :3]
     off = float(rotation_error(R))
-    if off > 1e-3:
+    if not off <= DIGITS_LOST:
         place = f"line {line}: " if line is not None else ""
         raise NoAnswerError("not a rotation", f"{place}found a matrix that is off by {off:.2g}, expected a rotation")
-    R = nearest_rotation(R) if off > ROTATION * 1e-6 else R
+    R = nearest_rotation(R) if off > CLEAN else R
     return Target(transform(R, answer.T[:3, 3]), answer.task)

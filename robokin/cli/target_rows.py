@@ -17,7 +17,7 @@ from robokin.cli.json_rows import JsonReader
 from robokin.cli.lines import BYTE_ORDER_MARK, MAX_LINE, Columns
 from robokin.cli.records import pose_columns
 from robokin.cli.rows import open_input
-from robokin.description.transforms import DIGITS_LOST, pose_from_matrix
+from robokin.description.transforms import pose_from_matrix
 from robokin.errors import InputError
 from robokin.spatial import (
     nearest_rotation,
@@ -27,18 +27,14 @@ from robokin.spatial import (
     rotation_from_rpy,
     transform,
 )
+from robokin.spatial.rotations import DIGITS_LOST
+from robokin.spatial.transforms import FARTHEST
 from robokin.units import Units
 
 Array = NDArray[np.float64]
 
-UNIT_LENGTH = 1e-3
-"""A quaternion this near to length one is one whose digits were cut."""
-
 CLEAN = 1e-12
 """A rotation that is off by less holds nothing but rounding."""
-
-FARTHEST = 1e12
-"""Metres: no arm reaches that far, and the squares of what is much farther are no numbers."""
 
 KINDS = {16: "matrix", 7: "quaternion", 6: "rpy"}
 """What a row of so many numbers is, where no header says it."""
@@ -243,7 +239,7 @@ def poses_from_rows(rows: Array, kind: str, units: Units) -> Array:
     if kind == "quaternion":
         with np.errstate(over="ignore"):
             length = np.linalg.norm(angles, axis=1)
-        wrong = ~(np.abs(length - 1.0) <= UNIT_LENGTH)
+        wrong = ~(np.abs(length - 1.0) <= DIGITS_LOST)
         if wrong.any():
             row = int(np.argmax(wrong))
             raise BadRowError(row, f"found a quaternion of length {length[row]:.6g}, expected 1")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.cli.arguments import parse_numbers
-from robokin.cli.target_rows import UNIT_LENGTH, near_enough, pose_documents, pose_in_document, read_targets
+from robokin.cli.target_rows import near_enough, pose_documents, pose_in_document, read_targets
 from robokin.description.expressions import Scope
 from robokin.description.transforms import evaluate_transform, pose_from_matrix
 from robokin.errors import ExpressionError, InputError
@@ -24,6 +24,7 @@ from robokin.spatial import (
     rotation_from_rpy,
     transform,
 )
+from robokin.spatial.rotations import DIGITS_LOST
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -97,7 +98,7 @@ def _rotation(option: str, text: str, units: Units) -> tuple[Array, str]:
 def _quaternion(text: str, option: str, units: Units) -> Array:
     values = parse_numbers(text, option, [False] * 4, units, "w, x, y, z")
     length = math.hypot(*values)
-    if not abs(length - 1.0) <= UNIT_LENGTH:
+    if not abs(length - 1.0) <= DIGITS_LOST:
         raise InputError(f"{option}: found a quaternion of length {length:.6g}, expected 1")
     return values / length
 

@@ -15,18 +15,20 @@ def usage_sentence(error: Any) -> str:
 
 
 def _found(error: Any, context: Any) -> str:
+    # The parser's own words change between versions, the names of its errors do not.
+    kind = type(error).__name__
     message = str(error.format_message()).strip().rstrip(".")
     option = getattr(error, "option_name", None)
-    if option is not None and message.startswith("No such option"):
+    if option is not None and kind == "NoSuchOption":
         parameters = context.command.get_params(context) if context is not None else []
         known = [name for param in parameters for name in param.opts if name.startswith("--")]
         return f"there is no option '{option}'{did_you_mean(option, known)}".rstrip("?")
-    if option is not None and "requires an argument" in message:
+    if option is not None and kind == "BadOptionUsage":
+        if "not take" in message:  # the one error for both mistakes; it knows no command
+            return f"{option} has a value, expected {option} alone"
         return f"{option} has nothing after it, expected {option} and a value"
-    if option is not None and "does not take a value" in message:
-        return f"{option} has a value, expected {option} alone"
     param = getattr(error, "param", None)
-    if param is not None and message.startswith("Missing"):
+    if param is not None and kind == "MissingParameter":
         return f"{param.metavar or param.name} is missing"
     if "unexpected extra argument" in message:
         extra = message.rpartition("(")[2].removesuffix(")")

@@ -30,7 +30,7 @@ from robokin.spatial import (
     transform,
     translation_transform,
 )
-from robokin.spatial.rotations import ZERO_AXIS
+from robokin.spatial.rotations import DIGITS_LOST, ZERO_AXIS
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -47,10 +47,6 @@ STEPS = {
     "matrix": "Matrix([[…], […], […], […]])",
 }
 """The steps by their name in lower case, with how they are written."""
-
-DIGITS_LOST = 1e-3
-"""A matrix or quaternion this near to a rotation is one whose digits were cut in print (four digits leave
-1e-4); the nearest rotation is taken. Beyond, it is something else and is refused."""
 
 PRIMES = "'′’"
 """What may follow the letter of an axis, as often as a lecture writes it: Rot(z'', 90)."""

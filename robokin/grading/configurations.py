@@ -113,8 +113,13 @@ def solutions_near(robot: Robot, T: Array, allowed: Tolerance, task: Task = "pos
     again = solve_many(robot, forward_kinematics(robot, nearest.q)[None], limits=limits)[0]
     if task != "pose" or not again.solutions:
         usable = nearest.within_limits or not limits
-        return replace(result, solutions=(nearest,) if usable else (), complete=False, families=False)
+        return replace(result, solutions=(nearest,) if usable else (), complete=False, basis=None, postures=False)
     return again
+
+
+def countable(result: Result) -> bool:
+    """Whether a list names every solution, so that one can be missing: not where solutions lie on a self-motion."""
+    return (result.complete and not result.families) or result.postures
 
 
 def mark_set(
@@ -123,7 +128,7 @@ def mark_set(
     """How configurations (n,) [rad | m] do as the set of all solutions for a target T (4, 4) [m]."""
     answers = [reached(robot, q, T, allowed, task, limits) for q in configurations]
     result = solutions_near(robot, T, allowed, task, limits)
-    counted = result.complete or result.families
+    counted = countable(result)
     right = [i for i, answer in enumerate(answers) if answer.right]
     if not counted:
         stand = _first_of_equals([answers[i].q for i in right], robot, allowed)

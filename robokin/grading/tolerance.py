@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from robokin.inverse.loop import chain_size
-from robokin.kinematics.chain import chain_of
+from robokin.kinematics.chain import chain_of, chain_size
 from robokin.model import Robot
 
 ANSWER_PART = 1e-3

@@ -17,6 +17,7 @@ or is solved by elimination.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, Literal
 from weakref import WeakKeyDictionary
@@ -24,14 +25,15 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.elimination import Elimination, choose_splits
-from robokin.inverse.loop import Loop, chain_size, loop_of
+from robokin.inverse.elimination import Elimination, choose_splits, generic_count, trial_poses
+from robokin.inverse.loop import Loop, loop_of
+from robokin.inverse.newton import closing_at
 from robokin.inverse.numeric import error_and_jacobian
 from robokin.inverse.padding import Padded, joint_frames_of, padded_chains
 from robokin.inverse.parallel import ThreeParallel
 from robokin.inverse.spherical import SphericalTriple
 from robokin.inverse.three_prismatic import ThreePrismatic
-from robokin.kinematics.chain import Chain, chain_of, exact, z_to
+from robokin.kinematics.chain import Chain, chain_of, chain_size, exact, z_to
 from robokin.model import Robot
 from robokin.spatial import rotation_from_axis_angle, transform
 
@@ -64,7 +66,8 @@ class Analysis:
     arm's joints, from 0, that only move what the task leaves open; solved: the chain without them; window:
     what is solved for of that; six: the window padded to six joints; loop: the same as a loop; solver: what
     solves it; method, sentence: its name and why it applies; complete: whether it finds every solution but
-    for the values of idle joints.
+    for the values of idle joints; number: how many complex solutions the loop has at a random pose, or how many roots
+    the closed form's equations have; None where it could not be told.
     """
 
     chain: Chain
@@ -79,11 +82,17 @@ class Analysis:
     method: str
     sentence: str
     complete: bool
+    number: int | None = None
 
     @property
     def redundancy(self) -> int:
         """How many joints are held besides the idle ones: the dimension of the self-motion without them."""
         return self.solved.n - (self.window.last - self.window.first)
+
+    @cached_property
+    def own(self) -> Chain:
+        """The window's joints alone: what is solved for, without virtual joints."""
+        return window_chain(self.solved, self.window)
 
     @property
     def moving(self) -> NDArray[np.intp]:
@@ -117,10 +126,12 @@ def analyse(chain: Chain, task: Task = "pose") -> Analysis:
         found = _closed_form(part)
         if found is not None:
             six, loop, solver = found
-            method, reason = _named(solver, six, solved, part)
+            own = min(part.n, solved.n - open_joints - window.first)
+            method, reason = _named(solver, six, solved, part, own)
             held = solved.n - part.n
             sentence = _sentence(reason, six, held)
-            return Analysis(*told, window, six, loop, solver, method, sentence, held == 0)
+            leaves = solver.candidates(trial_closing(loop)).leaves
+            return Analysis(*told, window, six, loop, solver, method, sentence, held == 0, leaves)
     for window in windows:
         part = window_chain(solved, window)
         general = _by_elimination(part)
@@ -128,7 +139,8 @@ def analyse(chain: Chain, task: Task = "pose") -> Analysis:
             six, loop, solver = general
             held = solved.n - part.n
             sentence = _sentence(solver.sentence, six, held)
-            return Analysis(*told, window, six, loop, solver, solver.method, sentence, held == 0)
+            number = generic_count(loop, solver.splits) if held == 0 else None
+            return Analysis(*told, window, six, loop, solver, solver.method, sentence, held == 0, number)
     window = Window(0, solved.n, _dimension(solved, size, 0, solved.n))
     sentence = "no six of its joints can do all that the arm can: damped least squares from many starts"
     return Analysis(*told, window, None, None, None, "numeric", sentence, complete=False)
@@ -237,6 +249,11 @@ def _by_elimination(part: Chain) -> tuple[Padded, Loop, General] | None:
     return None
 
 
+def trial_closing(loop: Loop) -> Array:
+    """L6 (1, 4, 4) of a random pose."""
+    return closing_at(loop, trial_poses(loop)[0][:1])
+
+
 class General:
     """The elimination with its chosen splits, in the shape of a closed form."""
 
@@ -252,18 +269,20 @@ class General:
         return self.first.candidates(closing)
 
 
-def _named(solver: Any, six: Padded, whole: Chain, part: Chain) -> tuple[str, str]:
-    """The method's name and reason in the arm's own joints, which the solver's may not be."""
-    own = part.n
+def _named(solver: Any, six: Padded, whole: Chain, part: Chain, own: int) -> tuple[str, str]:
+    """The method's name and reason in the arm's joints, the first `own` of the solver's: it may have others as well."""
     if six.virtual and part.revolute.all() and len({*_directions(part)}) == 1:
         return "planar", "all axes are parallel: a planar arm"
-    if six.virtual >= 3:
+    # Virtual joints, and those that the task leaves open, are no wrist of the arm.
+    if six.virtual == 0 and getattr(solver, "first", 0) + 3 <= own:
+        if whole.n > part.n:
+            return solver.method, f"closed form of six joints ({solver.method})"
+        return solver.method, solver.sentence
+    if own <= 3 and six.virtual not in (1, 2):
         return "positioning arm", f"{own} joints that place a point: a closed form"
-    if six.virtual:
-        return "closed form", f"a closed form of {own} joints"
-    if whole.n > own:
-        return solver.method, f"closed form of six joints ({solver.method})"
-    return solver.method, solver.sentence
+    if whole.n > part.n and six.virtual == 0:
+        return "closed form", "closed form of six joints"
+    return "closed form", f"a closed form of {own} joints"
 
 
 def _directions(part: Chain) -> list[int]:

@@ -5,14 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.analysis import Analysis, General, chain_pose_parts, window_chain
-from robokin.inverse.elimination import doubtful, rescue_candidates
-from robokin.inverse.families import with_families_held
-from robokin.inverse.loop import Candidates
-from robokin.inverse.nearest import SINGULAR
-from robokin.inverse.numeric import descend, error_and_jacobian
-from robokin.inverse.verify import CLOSES, VIRTUAL, Found, Poses, distinct, nothing, verified
-from robokin.spatial import invert
+from robokin.inverse.analysis import Analysis, chain_pose_parts
+from robokin.inverse.claims import COUNTED, SPREAD, Claims, replaced, unclaimed
+from robokin.inverse.second_look import look_again
+from robokin.inverse.verify import Found, distinct, distinct_and_close, merged, nothing
+from robokin.inverse.window import SINGULAR, TOLD_APART, beyond_chain, least_singular_values, solve_window
+from robokin.spatial import invert, rotation_transform
 
 Array = NDArray[np.float64]
 
@@ -25,29 +23,40 @@ HELD_SAMPLES = 48
 MORE_SAMPLES = 192
 """The same for a target that those do not serve: still a tenth of the time that a search takes."""
 
-GRAZING = 1e-5
-"""A virtual joint below this may be zero but for rounding (at a double root half of the digits are lost); the
-arm's own joints are then polished alone and judged by their own residual."""
+OPEN_TURN = np.array([0.31, -0.47, 0.73])
+"""Rotation vector [rad] by which targets are turned in what the task leaves open; unlike right angles, no arm's
+favourite."""
 
 
 def solve_block(
-    analysis: Analysis, T: Array, limits: Array, near: Array | None, rest: Array, more: bool = False
-) -> Found:
-    """Every configuration found for targets T: (m, 4, 4), m at most a block, duplicates removed.
+    analysis: Analysis,
+    T: Array,
+    limits: Array,
+    near: Array | None,
+    rest: Array,
+    more: bool = False,
+    thorough: bool = True,
+) -> tuple[Found, Claims]:
+    """Every configuration found for targets T: (m, 4, 4), m at most a block, duplicates removed, and what to say of it.
 
-    q: (s, n) holds the arm's own joints only; idle ones, and one of those that trade motion at a singular wrist,
-    are at `rest` (n,). For a redundant arm the joints outside the window are held at the values of `near` (n,), if
-    it is given, and at values spread over the limits (n, 2); with `more` at further and more such values, for
-    targets that the first do not serve.
+    q: (s, n) holds the arm's own joints only; idle ones are at `rest` (n,). For a redundant arm the joints outside the
+    window are held at the values of `near` (n,), if it is given, and at values spread over the limits (n, 2); with
+    `more` at further and more such values, for targets that the first do not serve. What is doubtful is looked at again
+    if `thorough`.
     """
     if analysis.solver is None:
-        return nothing(analysis.chain.n - analysis.open)
+        return nothing(analysis.chain.n - analysis.open), unclaimed(len(T))
     moving = analysis.moving
+    T = turned_in_the_open(analysis, T)
     if not analysis.redundancy:
         open_joints = np.tile([-np.inf, np.inf], (analysis.open, 1))
         bounds = np.concatenate([limits[moving], open_joints])
-        held = np.concatenate([rest[moving], np.zeros(analysis.open)])
-        found = with_families_held(analysis, T, _solve_window(analysis, T), held, bounds)
+        at_rest = np.concatenate([rest[moving], np.zeros(analysis.open)])
+        wish = None if near is None else np.concatenate([near[moving], np.zeros(analysis.open)])
+        if thorough:
+            found, claims = complete_solutions(analysis, T, at_rest, bounds, wish)
+        else:
+            found, claims = quick_solutions(analysis, T), unclaimed(len(T))
     else:
         held = spread(analysis, limits[moving])
         if more:
@@ -56,83 +65,78 @@ def solve_block(
             first = np.zeros((1, analysis.solved.n))
             first[0, : len(moving)] = near[moving]
             held = np.concatenate([first, held])
-        found = _solve_held(analysis, T, held)
+        found, claims = _solve_held(analysis, T, held), unclaimed(len(T), SPREAD)
     found = Found(found.index, found.q[:, : len(moving)], found.position, found.angle)
-    if len(moving) and not analysis.redundancy:
+    if len(moving) and not analysis.redundancy and analysis.open:
         found = distinct(found, analysis.solved.revolute[: len(moving)], analysis.size)
     elif not len(moving):
         found = found.pick(np.unique(found.index, return_index=True)[1])
     if not analysis.idle:
-        return found
+        return found, claims
     q = np.tile(rest, (len(found), 1))
     q[:, moving] = found.q
-    return Found(found.index, q, found.position, found.angle)
+    return Found(found.index, q, found.position, found.angle), claims
 
 
-def _solve_window(analysis: Analysis, T: Array) -> Found:
-    """Solutions of the window for its own targets; q: (s, window)."""
-    six, loop = analysis.six, analysis.loop
-    assert six is not None
-    assert loop is not None
-    closing = loop.closing(T)
-    poses = Poses(six.chain, T)
-    candidates = analysis.solver.candidates(closing)
-    found = verified(loop, six.chain, poses, closing, candidates)
-    if isinstance(analysis.solver, General):
-        found = distinct(found, six.chain.revolute, loop.size)
-        scale = np.where(six.chain.revolute, 1.0, loop.size)
-        values = (found.q + six.chain.offsets) / scale
-        again = np.flatnonzero(doubtful(loop, len(T), found.index, values))
-        if len(again):
-            more = rescue_candidates(loop, analysis.solver.splits, closing[again])
-            more = Candidates(again[more.index], more.values)
-            extra = verified(loop, six.chain, poses, closing, more)
-            found = merged(found, extra)
-    if six.virtual:
-        found = _own_joints(analysis, T, found)
-    return found
+def quick_block(analysis: Analysis, T: Array, limits: Array, rest: Array) -> Found:
+    """`solve_block` without the second look, for those who ask for a million targets and can do without some."""
+    return solve_block(analysis, T, limits, None, rest, thorough=False)[0]
 
 
-def _own_joints(analysis: Analysis, T: Array, found: Found) -> Found:
-    """Those whose virtual joints stand still, with the window's own joints only."""
-    assert analysis.six is not None
-    assert analysis.loop is not None
-    chain = analysis.six.chain
-    own = chain.n - analysis.six.virtual
-    scale = np.where(chain.revolute[own:], 1.0, analysis.loop.size)
-    virtual = found.q[:, own:] / scale
-    virtual = np.where(chain.revolute[own:], virtual - 2 * np.pi * np.round(virtual / (2 * np.pi)), virtual)
-    size = np.max(np.abs(virtual), axis=1)
-    still = size <= GRAZING
-    family = np.zeros(len(found), dtype=bool)
-    if not analysis.redundancy:
-        family = _on_self_motions(analysis, T, found, still)
-    found = found.pick(still | family)
-    own_chain = window_chain(analysis.solved, analysis.window)
-    q, position, angle = found.q[:, :own], found.position.copy(), found.angle.copy()
-    if not len(q):
-        return Found(found.index, q, position, angle)
-    steps = 2 if np.all(size <= VIRTUAL) else 8 if not family.any() else 25
-    q, error = descend(own_chain, T[found.index], q, analysis.size, steps=steps)
-    position = np.linalg.norm(error[:, :3], axis=1) * analysis.size
-    angle = np.linalg.norm(error[:, 3:], axis=1)
-    closes = (position <= CLOSES * analysis.size) & (angle <= CLOSES)
-    return Found(found.index, q, position, angle).pick(closes)
+def quick_solutions(analysis: Analysis, T: Array) -> Found:
+    """What the window's solver finds for its own targets."""
+    found, _ = solve_window(analysis, T, count=False)
+    return distinct(found, analysis.own.revolute, analysis.size)
 
 
-def _on_self_motions(analysis: Analysis, T: Array, found: Found, still: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """(s,) which configurations are on self-motions of the six joints, for targets without any that stand `still`.
+def turned_in_the_open(analysis: Analysis, T: Array) -> Array:
+    """Targets (m, 4, 4) turned in what the task leaves open.
 
-    Such a curve may lead to where the virtual joints stand still: its members are starts for the arm's own.
+    A chain with open joints is singular where one of them stands like one of the arm's own, and that depends on the
+    values of the open joints: a cylindrical arm with the roll at zero, as forward kinematics gives it, and a virtual
+    axis parallel to the first. Any other values serve the task as well.
     """
-    assert analysis.six is not None
-    answered = np.bincount(found.index[still], minlength=len(T)) > 0
-    family = ~answered[found.index]
-    chosen = np.flatnonzero(family)
-    if len(chosen):
-        _, J = error_and_jacobian(analysis.six.chain, T[found.index[chosen]], found.q[chosen], analysis.size)
-        family[chosen] = np.linalg.svd(J, compute_uv=False)[:, -1] <= SINGULAR
-    return family
+    if not analysis.open or analysis.redundancy:
+        return T
+    axis = OPEN_TURN if analysis.open == 3 else OPEN_TURN * [0.0, 0.0, 1.0]
+    return T @ rotation_transform(axis, float(np.linalg.norm(axis)))
+
+
+def complete_solutions(
+    analysis: Analysis, T: Array, rest: Array, limits: Array, near: Array | None
+) -> tuple[Found, Claims]:
+    """All that the window can do for its own targets, those looked at twice of which anything is doubtful.
+
+    rest: (window,) where a joint that is free is put; limits: (window, 2); near: (window,) the wish for self-motions.
+    """
+    chain = analysis.own
+    found, doubt = solve_window(analysis, T)
+    closing = np.bincount(found.index, minlength=len(T))
+    found, equal, close = distinct_and_close(found, chain.revolute, analysis.size)
+    count = np.bincount(found.index, minlength=len(T))
+    # Two that come out as one may have been two, so near to each other that Newton's steps led both to the same.
+    doubt.certain[equal] = True
+    doubt.certain |= count == 0
+    if chain.n == 6:
+        doubt.certain |= count % 2 == 1
+    else:
+        # The six joints may be singular where the arm's own are not.
+        doubt.certain |= doubt.possible
+    doubt.possible[close] = True
+    rows = np.flatnonzero((doubt.possible & ~doubt.certain)[found.index])
+    if len(rows):
+        least = least_singular_values(chain, found.q[rows], analysis.size)
+        whole = count[found.index[rows]] == (analysis.number if chain.n == 6 else -1)
+        doubt.certain[found.index[rows[least < np.where(whole, TOLD_APART, SINGULAR)]]] = True
+    again = np.flatnonzero(doubt.certain & ~beyond_chain(chain, T, analysis.size))
+    claims = Claims(np.full(len(T), COUNTED, dtype=np.int8), analysis.number, count)
+    claims.candidates, claims.duplicates = doubt.candidates, closing - count
+    claims.branches = bool(analysis.open or (analysis.six is not None and analysis.six.virtual))
+    if not len(again):
+        return found, claims
+    part = found.pick(doubt.certain[found.index])
+    part = Found(np.searchsorted(again, part.index), part.q, part.position, part.angle)
+    return replaced(found, claims, again, *look_again(analysis, T[again], part, rest, limits, near))
 
 
 def _solve_held(analysis: Analysis, T: Array, held: Array) -> Found:
@@ -146,7 +150,7 @@ def _solve_held(analysis: Analysis, T: Array, held: Array) -> Found:
     parts = []
     flat = inner.reshape(m * k, 4, 4)
     for start in range(0, m * k, BLOCK):
-        part = _solve_window(analysis, np.ascontiguousarray(flat[start : start + BLOCK]))
+        part = solve_window(analysis, np.ascontiguousarray(flat[start : start + BLOCK]), count=False)[0]
         # What differs in a held joint is different: only the few solutions of one row need a comparison.
         part = distinct(part, chain.revolute[window.first : window.last], analysis.size)
         index = part.index + start
@@ -156,16 +160,6 @@ def _solve_held(analysis: Analysis, T: Array, held: Array) -> Found:
     for part in parts:
         found = merged(found, part)
     return found
-
-
-def merged(a: Found, b: Found) -> Found:
-    """Both, one after the other."""
-    return Found(
-        np.concatenate([a.index, b.index]),
-        np.concatenate([a.q, b.q]),
-        np.concatenate([a.position, b.position]),
-        np.concatenate([a.angle, b.angle]),
-    )
 
 
 def spread(analysis: Analysis, limits: Array, count: int = HELD_SAMPLES, start: int = 0) -> Array:

@@ -1,108 +1,127 @@
-"""Names of solutions: shoulder right or left, elbow up or down, wrist flip or no-flip.
+"""Names of solutions: shoulder right or left, elbow up or down, wrist flip or no-flip, and numbers where words fail.
 
-The words are geometry, so that one name means the same posture on every arm:
+The words say on which side of the arm's singularities a configuration is (see `postures`): one name means the same
+posture as long as the arm passes no singularity, and no two solutions of a pose have the same one.
 
-- shoulder right: the wrist centre (or the hand of an arm without a wrist) lies on the positive side of the
-  first axis, where x₁ · (w - o₁) ≥ 0 with x₁ the direction in which the arm reaches at the given q₁. With
-  the lecture's table of the anthropomorphic arm this is θ₁ = atan2(p_y, p_x), shoulder left is half a turn on.
-- elbow up: the elbow lies above the line from the shoulder to the wrist, above being the direction of the
-  first axis; for a planar arm: to the left of the line from the base to the wrist.
+- shoulder right: the wrist centre (or the tool of a positioning arm) lies on the positive side of the first axis, where
+  x₁ · (w - o₁) ≥ 0 with x₁ the direction in which the arm reaches at the given q₁. With the lecture's table of the
+  anthropomorphic arm this is θ₁ = atan2(p_y, p_x), shoulder left is half a turn on.
+- elbow up: the elbow lies above the line from the shoulder to the wrist, above being the direction of the first axis;
+  if the shoulder is set off from that axis the name stays while the wrist is between the two. For a planar arm: to the
+  left of the line from the base to the wrist.
 - wrist no-flip: the wrist's middle axis has turned to the positive side, sin θ ≥ 0.
+- slide forward: the slide carries the wrist away from where the axes before it meet.
+
+Where signs cannot tell all solutions apart (arms without a closed form) a number is added, in the order of q1, q2, …
+among the solutions of the pose with the same signs. A number is no posture: it may change where another solution
+appears. An arm with more joints than it needs is named by those that are solved for, the others being held: of what is
+listed for different values of those, two may have one name.
 """
 
 from __future__ import annotations
 
+from weakref import WeakKeyDictionary
+
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.padding import joint_frames_of
+from robokin.inverse.analysis import Window, analysis_of, window_chain
+from robokin.inverse.postures import Postures, postures_of
+from robokin.inverse.verify import SAME, wrapped
 from robokin.kinematics.chain import chain_of
-from robokin.kinematics.structure import structure_of
 from robokin.model import Robot
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+HELD = 1e-6
+"""Held joints that differ by less [rad | size] have one value."""
+
+_kept: WeakKeyDictionary[Robot, tuple[Window, Postures]] = WeakKeyDictionary()
 
 
-def branch_names(robot: Robot, q: Array) -> list[str]:
-    """The name of each configuration q: (s, n), or "" where the arm has no such words."""
+def branch_names(robot: Robot, q: Array, index: Index | None = None) -> list[str]:
+    """The name of each configuration q: (s, n) [rad | m], or "" where the arm has no words and one solution.
+
+    index: (s,) the target that each is a solution for. With it, solutions of one target that signs do not tell apart
+    are numbered, and q should hold all of them; without it each is named by its signs alone.
+    """
     if not len(q):
         return []
-    structure = structure_of(robot)
-    arm, n = structure.arm, robot.n
-    chain = chain_of(robot)
-    F = joint_frames_of(chain, q)
-    words: list[list[str]] = [[] for _ in q]
-    if (arm == "planar" and n >= 3) or (arm in ("planar", "SCARA") and n >= 2):
-        _add(words, _planar_elbow(F), "elbow up", "elbow down")
-    elif arm == "anthropomorphic" and 3 <= n <= 6:
-        wrist = _wrist_centre(F, structure.wrist, n)
-        _add(words, _shoulder(F, wrist), "shoulder right", "shoulder left")
-        _add(words, _elbow(F, wrist), "elbow up", "elbow down")
-    elif arm == "spherical":
-        _add(words, _side(F, 1), "shoulder right", "shoulder left")
-    if n == 6 and (structure.wrist.startswith("spherical") or arm == "anthropomorphic"):
-        _add(words, _side(F, 4), "wrist no-flip", "wrist flip")
-    elif arm == "spherical wrist":
-        _add(words, _side(F, 1), "wrist no-flip", "wrist flip")
-    return [", ".join(parts) for parts in words]
+    window, postures = _postures(robot)
+    part = slice(window.first, window.last)
+    axes = postures.axes(np.asarray(q[:, part], dtype=np.float64))
+    # A bit for each sign: configurations with one code have one name.
+    code = np.zeros(len(q), dtype=np.intp)
+    for bit, sign in enumerate(postures.signs):
+        code |= sign.holds(axes).astype(np.intp) << bit
+    numbers = np.zeros(len(q), dtype=np.intp)
+    if index is not None:
+        numbers = _numbers(robot, q, index, code, part, postures)
+    names: dict[tuple[int, int], str] = {}
+    for key in set(zip(code.tolist(), numbers.tolist(), strict=True)):
+        words = [sign.word(bool(key[0] >> bit & 1)) for bit, sign in enumerate(postures.signs)]
+        names[key] = ", ".join([*words, f"number {key[1]}"] if key[1] else words)
+    return [names[key] for key in zip(code.tolist(), numbers.tolist(), strict=True)]
 
 
-def _add(words: list[list[str]], yes: NDArray[np.bool_], name: str, other: str) -> None:
-    for parts, flag in zip(words, yes, strict=True):
-        parts.append(name if flag else other)
+def listed_names(robot: Robot, q: Array, index: Index, every: tuple[Array, Index]) -> list[str]:
+    """The names of some solutions q: (s, n), index: (s,) among all that there are: (t, n) and (t,), sorted by target.
+
+    So a solution has the same name whether or not joint limits, or a cut, leave the others in the list.
+    """
+    q_all, index_all = every
+    if not len(q):
+        return []
+    names = branch_names(robot, q_all, index_all)
+    if np.array_equal(q, q_all):
+        return names
+    scale = np.where(robot.revolute, 1.0, analysis_of(robot).size)
+    start = np.searchsorted(index_all, index)
+    count = np.searchsorted(index_all, index, side="right") - start
+    best, least = start.copy(), np.full(len(q), np.inf)
+    for step in range(int(count.max(initial=0))):
+        row = np.minimum(start + step, len(q_all) - 1)
+        gap = np.max(np.abs(wrapped(q_all[row] - q, robot.revolute)) / scale, axis=1)
+        nearer = (step < count) & (gap < least)
+        best[nearer], least[nearer] = row[nearer], gap[nearer]
+    return [names[row] for row in best.tolist()]
 
 
-def _wrist_centre(F: Array, wrist: str, n: int) -> Array:
-    """(s, 3) where the wrist's axes meet, or the origin of the last arm joint's successor, or the hand."""
-    if n <= 3:
-        return F[:, -1, :3, 3]
-    if wrist.startswith("spherical"):
-        z, o = F[:, -3:-1, :3, 2], F[:, -3:-1, :3, 3]
-        return _meeting(z[:, 0], o[:, 0], z[:, 1], o[:, 1])
-    return F[:, min(n - 1, 4), :3, 3]
+def _postures(robot: Robot) -> tuple[Window, Postures]:
+    kept = _kept.get(robot)
+    if kept is None:
+        analysis = analysis_of(robot)
+        window = analysis.window
+        if window.last - window.first > 6:
+            window = Window(0, 0, window.dimension)
+        kept = _kept[robot] = window, postures_of(window_chain(chain_of(robot), window))
+    return kept
 
 
-def _meeting(z0: Array, o0: Array, z1: Array, o1: Array) -> Array:
-    """The point (s, 3) of the second line nearest to the first one."""
-    normal = np.cross(z0, z1)
-    along = np.einsum("si,si->s", np.cross(o1 - o0, z0), normal) / np.einsum("si,si->s", normal, normal)
-    return np.asarray(o1 + along[:, None] * z1)
+def _numbers(robot: Robot, q: Array, index: Index, code: Index, part: slice, postures: Postures) -> Index:
+    """(s,) the number of each configuration among those of the same target, signs and held joints, or 0 for none.
 
-
-def _shoulder(F: Array, wrist: Array) -> NDArray[np.bool_]:
-    """Whether the wrist is on the side that x of the first link points to."""
-    x1, o1 = F[:, 1, :3, 0], F[:, 0, :3, 3]
-    return _along(wrist - o1, x1)
-
-
-def _elbow(F: Array, wrist: Array) -> NDArray[np.bool_]:
-    z1, shoulder, elbow = F[:, 0, :3, 2], F[:, 1, :3, 3], F[:, 2, :3, 3]
-    normal = F[:, 1, :3, 2]
-    line = wrist - shoulder
-    up = np.cross(normal, line)
-    up = up * np.sign(np.einsum("si,si->s", up, z1))[:, None]
-    return _along(elbow - shoulder, up)
-
-
-def _planar_elbow(F: Array) -> NDArray[np.bool_]:
-    base, elbow = F[:, 0, :3, 3], F[:, 1, :3, 3]
-    wrist = F[:, 2, :3, 3]
-    left = np.cross(F[:, 0, :3, 2], wrist - base)
-    return _along(elbow - base, left)
-
-
-def _side(F: Array, joint: int) -> NDArray[np.bool_]:
-    """Whether a joint has turned its neighbours' axes to the positive side, sin θ ≥ 0."""
-    before, axis, after = F[:, joint - 1, :3, 2], F[:, joint, :3, 2], F[:, joint + 1, :3, 2]
-    return _along(np.cross(before, after), axis, 1.0)
-
-
-UNDECIDED = 1e-6
-"""A sine this small is no side: a straight elbow is up, a straight wrist no-flip, whatever its last digits say."""
-
-
-def _along(v: Array, direction: Array, length: float | None = None) -> NDArray[np.bool_]:
-    """Whether vectors v (s, 3) point along directions (s, 3) rather than against them; neither counts as along."""
-    longest = np.linalg.norm(v, axis=1) if length is None else length
-    scale = longest * np.linalg.norm(direction, axis=1)
-    return np.asarray(np.einsum("si,si->s", v, direction) >= -UNDECIDED * scale)
+    Configurations that differ by whole turns only have the same one.
+    """
+    scale = np.where(robot.revolute, 1.0, postures.size)
+    values = np.round(wrapped(q, robot.revolute) / scale / SAME)
+    # -180° is 180°.
+    values = np.where(robot.revolute & (values <= -np.floor(np.pi / SAME)), np.round(np.pi / SAME), values)
+    others = np.delete(np.arange(robot.n), np.arange(robot.n)[part])
+    keys = [np.round(values[:, i] * (SAME / HELD)) for i in others[::-1]]
+    order = np.lexsort([*(values[:, i] for i in range(robot.n)[::-1]), *keys, code, index])
+    key = np.stack([index, code, *(values[:, i] for i in others)], axis=1)[order]
+    new_group = np.ones(len(q), dtype=bool)
+    new_group[1:] = np.any(np.diff(key, axis=0) != 0, axis=1)
+    gap = np.abs(wrapped(np.diff(q[order], axis=0), robot.revolute)) / scale
+    another = new_group.copy()
+    another[1:] |= np.max(gap, axis=1, initial=0.0) > SAME
+    group = np.cumsum(new_group) - 1
+    rank = np.cumsum(another)
+    rank = rank - rank[np.flatnonzero(new_group)][group] + 1
+    most = np.zeros(group[-1] + 1, dtype=np.intp)
+    np.maximum.at(most, group, rank)
+    numbers = np.zeros(len(q), dtype=np.intp)
+    numbers[order] = np.where((most[group] > 1) | postures.numbered, rank, 0)
+    return numbers

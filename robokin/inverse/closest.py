@@ -3,16 +3,12 @@
 Statement, the law of what closest means. Of all configurations within the limits those count whose position
 is nearest to the target's (to within `SAME_PLACE`); of these, those whose orientation is nearest, by the angle
 of the turn that is left (to within `SAME_ANGLE`); of these, that with the least joint move from home.
-Derivation. The position comes first as the limit of a sum: ½|p - t|² + w (1 - cos θ) is minimised for w = 1e-2,
-1e-4, 1e-6, 1e-8 and then 0, each from where the one before ended (`second_order`; J. Nocedal, S. J. Wright,
-"Numerical Optimization", 2nd ed., 2006, section 17.1, the quadratic penalty method). With w the position's error is
-above its least by w times a number of order one, so that the last descent, for the position alone, moves joints by
-some 1e-8, and the orientation's error is above its least by the square of that: along what the position leaves free
-it has no slope there.
-The least of all. A descent ends in the minimum that it starts above. Of configurations drawn at random those are
-started from that come nearest in each of as many parts of the joint space; the ends that differ, the best first,
-are followed further.
-Degenerate case. At the edge of the reach, where f is quartic, the position is exact to 1e-9 of the arm's size.
+Derivation. A descent ends in the minimum that it starts above (`position_first`), so that what counts is where it
+starts: in each of as many parts of the joint space, inside the box of joint limits and on its faces, and at its
+corners (`initial_guesses`). All go down for some steps of ½|p - t|² + w (1 - cos θ), position and angle together; the
+ends that differ, the best first, are followed with the position first, and the best of these to the last digit.
+Degenerate case. At the edge of the reach, where the position has no slope in some direction, and where an arm is
+singular at its limits, the ends are put on the limits, brought nearer with hardly any damping, and turned once more.
 """
 
 from __future__ import annotations
@@ -21,21 +17,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.analysis import Analysis
-from robokin.inverse.nearest import starts
-from robokin.inverse.padding import joint_frames_of
+from robokin.inverse.initial_guesses import CORNERS, GUESSES, guesses
+from robokin.inverse.position_first import (
+    SAME_PLACE,
+    Ends,
+    Ways,
+    at_the_edge,
+    better,
+    nearer_still,
+    on_limits,
+    position_first,
+)
 from robokin.inverse.second_order import go_down
 from robokin.kinematics.chain import Chain
 
 Array = NDArray[np.float64]
-
-DRAWN = 2048
-"""Configurations drawn to choose the starts from."""
-
-STARTS = 32
-"""Parts of the joint space, and starts of the search for one target; a power of two."""
+MoreStarts = tuple[NDArray[np.intp], Array]
+"""More initial guesses: the targets (s,) that they are for and the configurations (s, n) [rad | m]."""
 
 FINALISTS = 20
-"""Ends of these that are followed further."""
+"""Ends of the first descents that are followed further."""
+
+LEADERS = 6
+"""Ends of those that are followed to the last digit."""
+
+HOPE = 1e-2
+"""A distance [size] that counts as much as an angle of one radian among those that may become better yet."""
 
 TOGETHER = 32
 """Targets searched for at once: enough that the interpreter's share is spread thin; more gain little."""
@@ -43,58 +50,99 @@ TOGETHER = 32
 FIRST = 1e-2
 """w of the first descents: not so small that the way leads through a narrow curved valley."""
 
+CAREFUL = 1e-4
+"""w of the first descents that every fourth initial guess begins as well."""
+
 AGAIN = 4
-"""The starts of every fourth part go down at once with a small w, too: with the great one two branches near which
+"""Every fourth initial guess goes down at once with a small w, too: with the great one two branches near which
 the arm is singular, such as those of a nearly folded elbow, lead to one and the same end."""
 
-THEN = (1e-4, 1e-6)
-"""w of those that follow."""
+THEN = (1e-3, 1e-5)
+"""w of the descents that follow."""
 
-LAST = (1e-6, 1e-8)
+LAST = (1e-4, 1e-6, 1e-8)
 """w of the last descents, of the best alone, with more steps: few need them."""
+
+LEAST = (1e-10, 1e-12)
+"""w of the descents where the position has no slope in some direction: there the joints move by its third root."""
 
 RANKED = 1e-3
 """w by which the ends of the first descents are compared: the position counts for more than it did for these."""
 
-TURN = 1e-2
-"""w by which the configurations drawn are compared."""
-
 ALIKE = 1e-3
 """Ends whose distances [size] and angles [rad] differ by less are followed once."""
 
-SAME_PLACE = 1e-10
-"""Distances from the target [size] that differ by less are the same."""
+ROUGH_PLACE = 1e-6
+"""Distances [size] that ends followed roughly may differ by and still be the same."""
+
+ROUGH_ANGLE = 1e-4
+"""The same for angles [rad]."""
 
 SAME_ANGLE = 1e-7
 """Angles [rad] that differ by less are the same."""
 
 
 def nearest_configurations(
-    analysis: Analysis, T: Array, limits: Array, home: Array, seed: int
+    analysis: Analysis,
+    T: Array,
+    limits: Array,
+    home: Array,
+    seed: int,
+    more_starts: MoreStarts | None = None,
 ) -> tuple[Array, Array, Array]:
     """For targets T: (m, 4, 4) [m] the closest configurations (m, n) [rad | m] within limits (n, 2).
 
     Also their distances (m,) [m] and angles (m,) [rad] from the targets. Idle joints stay at `home` (n,), which is
-    also one of the starts. The answer for a target does not depend on the others.
+    also one of the initial guesses. more_starts: more of them, the targets (s,) and the configurations (s, n)
+    [rad | m], within the limits or not: angles are turned towards the limits and what is outside is put on them.
+    The answer for a target does not depend on the others.
     """
-    chain = analysis.chain
+    chain, size = analysis.chain, analysis.size
+    scale = np.where(chain.revolute, 1.0, size)
+    wide, at_home, chosen = initial_guesses(analysis, T, limits, home, seed, more_starts)
+    ways = Ways(chain, size, *(bound[:, None] for bound in (wide / scale[:, None]).T))
+    known = chosen.shape[1] - GUESSES
+    q, position, angle = np.empty((len(T), len(home))), np.empty(len(T)), np.empty(len(T))
+    for first in range(0, len(T), TOGETHER):
+        some = slice(first, first + TOGETHER)
+        ends = _search(ways, T[some], chosen[some] / scale, known, at_home / scale, analysis.open)
+        q[some], position[some], angle[some] = (ends.x.T * scale)[:, : len(home)], ends.distance, ends.angle
+    return q, position * size, angle
+
+
+def initial_guesses(
+    analysis: Analysis, T: Array, limits: Array, home: Array, seed: int, more: MoreStarts | None
+) -> tuple[Array, Array, Array]:
+    """The limits (n, 2), the home (n,) and the initial guesses (m, k, n) for targets T: (m, 4, 4) [rad | m].
+
+    n counts the joints that the task leaves open, too; the arguments are those of `nearest_configurations`. Home
+    and `more` come first, then those chosen for the target.
+    """
     wide = np.concatenate([limits, np.tile([-np.inf, np.inf], (analysis.open, 1))])
     idle = list(analysis.idle)
     wide[idle] = home[idle, None]
     at_home = np.concatenate([home, np.zeros(analysis.open)])
-    scale = np.where(chain.revolute, 1.0, analysis.size)
-    drawn = starts(chain, wide, analysis.size, DRAWN, seed)
-    drawn = drawn[_parts(drawn / scale)]
-    poses = joint_frames_of(chain, drawn)[:, -1]
-    q, position, angle = np.empty((len(T), len(home))), np.empty(len(T)), np.empty(len(T))
-    for first in range(0, len(T), TOGETHER):
-        some = slice(first, first + TOGETHER)
-        chosen = drawn[_best_of_parts(poses, T[some], analysis.size)]
-        chosen = np.concatenate(
-            [np.broadcast_to(at_home, (len(chosen), 1, chain.n)), chosen, chosen[:, ::AGAIN]], axis=1
-        )
-        q[some], position[some], angle[some] = _search(analysis, T[some], chosen / scale, wide / scale[:, None], home)
-    return q, position * analysis.size, angle
+    drawn = guesses(analysis.chain, wide, analysis.size, seed)
+    parts = [drawn.nearest(T[i : i + TOGETHER], analysis.size) for i in range(0, len(T), TOGETHER)]
+    chosen = np.concatenate([np.empty((0, GUESSES, analysis.chain.n)), *parts])
+    return wide, at_home, np.concatenate([_side_by_side(analysis, len(T), limits, at_home, more), chosen], axis=1)
+
+
+def _side_by_side(analysis: Analysis, m: int, limits: Array, home: Array, more: MoreStarts | None) -> Array:
+    """(m, k, n) home and more initial guesses for each target; where one has fewer, home again."""
+    if more is None or not len(more[0]):
+        return np.tile(home, (m, 1, 1))
+    index, q = more
+    own = q.shape[1]
+    low, high = limits.T
+    turns = analysis.chain.revolute[:own] & np.isfinite(limits).all(axis=1)
+    amid = np.where(turns, 0.5 * (np.where(turns, low, 0.0) + np.where(turns, high, 0.0)), 0.0)
+    q = np.where(turns, q + 2.0 * np.pi * np.round((amid - q) / (2.0 * np.pi)), q)
+    order = np.argsort(index, kind="stable")
+    place = np.arange(len(index)) - np.searchsorted(index[order], index[order])
+    table = np.tile(home, (m, 1 + int(place.max()) + 1, 1))
+    table[index[order], 1 + place, :own] = np.clip(q[order], low, high)
+    return table
 
 
 def beyond_reach(analysis: Analysis, T: Array, limits: Array) -> NDArray[np.bool_]:
@@ -112,98 +160,77 @@ def beyond_reach(analysis: Analysis, T: Array, limits: Array) -> NDArray[np.bool
     return beyond
 
 
-def _parts(x: Array) -> NDArray[np.intp]:
-    """The order of configurations (DRAWN, n) that puts those of each of STARTS parts of the joint space together.
-
-    The parts come from halving at the median, joint after joint (J. L. Bentley's k-d tree, Commun. ACM 18(9),
-    1975).
-    """
-    cells, joint = [np.arange(len(x))], 0
-    while len(cells) < STARTS:
-        ordered = [cell[np.argsort(x[cell, joint % x.shape[1]], kind="stable")] for cell in cells]
-        cells = [half for cell in ordered for half in (cell[: len(cell) // 2], cell[len(cell) // 2 :])]
-        joint += 1
-    return np.concatenate(cells)
-
-
-def _best_of_parts(poses: Array, T: Array, size: float) -> NDArray[np.intp]:
-    """(m, STARTS) which of the poses (DRAWN, 4, 4) comes nearest to each target (m, 4, 4) in each part."""
-    away = np.zeros((len(T), len(poses)))
-    for row in range(3):
-        for column in range(4):
-            weight = 1.0 / size**2 if column == 3 else TURN / 2.0
-            away += weight * np.square(poses[:, row, column] - T[:, None, row, column])
-    each = len(poses) // STARTS
-    best: NDArray[np.intp] = np.argmin(away.reshape(len(T), STARTS, each), axis=2) + each * np.arange(STARTS)
-    return best
-
-
-def _search(analysis: Analysis, T: Array, x: Array, limits: Array, home: Array) -> tuple[Array, Array, Array]:
-    """The best of what starts x: (m, k, n) come to, their distances [size] and angles; limits (n, 2) [rad | size]."""
-    chain, size = analysis.chain, analysis.size
-    scale = np.where(chain.revolute, 1.0, size)
-    low_high = limits[:, :1], limits[:, 1:]
+def _search(ways: Ways, T: Array, x: Array, known: int, home: Array, opened: int) -> Ends:
+    """The best of what the guesses x: (m, k, n) come to; home (n,) [rad | size]; the last `opened` joints are none."""
     m, k, n = x.shape
     targets = np.ascontiguousarray(T[:, :3].transpose(2, 1, 0))
+    careful = np.concatenate([x[:, :known], x[:, known::AGAIN], x[:, -CORNERS:]], axis=1)
+    every = np.concatenate([x, careful], axis=1)
+    weights = np.repeat([FIRST, CAREFUL], [k, careful.shape[1]])
+    k = every.shape[1]
     ends, place, turn = go_down(
-        chain,
+        ways.chain,
         np.repeat(targets, k, axis=2),
-        np.ascontiguousarray(x.reshape(m * k, n).T),
-        size,
-        low_high,
-        np.tile(np.where(np.arange(k) <= STARTS, FIRST, THEN[0]), m),
+        np.ascontiguousarray(every.reshape(m * k, n).T),
+        ways.size,
+        (ways.low, ways.high),
+        np.tile(weights, m),
         steps=8,
         still=1e-3,
     )
-    picked = _finalists(place.reshape(m, k), turn.reshape(m, k)) + k * np.arange(m)[:, None]
-    many = np.repeat(targets, FINALISTS, axis=2)
-    ends, distance, angle = _position_first(chain, many, ends[:, picked.ravel()], size, low_high, THEN, 8)
-    away = (ends.T[:, : len(home)] * scale[: len(home)]).reshape(m, FINALISTS, len(home)) - home
-    best = _closest(chain, distance.reshape(m, FINALISTS), angle.reshape(m, FINALISTS), away, size)
-    best += FINALISTS * np.arange(m)
-    end, distance, angle = ends[:, best], distance[best], angle[best]
-    last, nearer, less = _position_first(chain, targets, end, size, low_high, LAST, 40)
-    # Beside a singular configuration the way along what the position leaves free may lead off it.
-    better = nearer <= distance + SAME_PLACE
-    end, distance, angle = (
-        np.where(better, last, end),
-        np.where(better, nearer, distance),
-        np.where(better, less, angle),
-    )
-    return end.T[:, : len(home)] * scale[: len(home)], distance, angle
+    picked = _finalists(place.reshape(m, k), turn.reshape(m, k), FINALISTS) + k * np.arange(m)[:, None]
+    count, own = picked.shape[1], n - opened
+    found = position_first(ways, np.repeat(targets, count, axis=2), ends[:, picked.ravel()], THEN, 8, 8)
+    move = _moves(ways.chain, found.x.T.reshape(m, count, n), home, own)
+    picked = _leaders(found.distance.reshape(m, count), found.angle.reshape(m, count), move)
+    found = found.pick((picked + count * np.arange(m)[:, None]).ravel())
+    count = picked.shape[1]
+    many = np.repeat(targets, count, axis=2)
+    found = better(found, position_first(ways, many, found.x, LAST, 30, 25))
+    found = on_limits(ways, many, found, LAST, 15, 25)
+    found = nearer_still(ways, many, found, 40)
+    found = at_the_edge(ways, many, found, LEAST, 20, 25)
+    move = _moves(ways.chain, found.x.T.reshape(m, count, n), home, own)
+    best = _closest(found.distance.reshape(m, count), found.angle.reshape(m, count), move)
+    return found.pick(best + count * np.arange(m))
 
 
-def _position_first(
-    chain: Chain, T: Array, x: Array, size: float, limits: tuple[Array, Array], weights: tuple[float, ...], steps: int
-) -> tuple[Array, Array, Array]:
-    """Where x: (n, s) comes to by the law above [rad | size], its distances [size] and angles [rad], each (s,).
-
-    T: (4, 3, s) the targets' columns [m].
-    """
-    for w in weights:
-        every = np.full(x.shape[1], w)
-        x, _, _ = go_down(chain, T, x, size, limits, every, steps=steps, still=0.1 * w**0.5)
-    none = np.zeros(x.shape[1])
-    x, place, turn = go_down(chain, T, x, size, limits, none, steps=25, still=1e-7, least=1e-9)
-    return x, np.sqrt(2.0 * place), 2.0 * np.arcsin(np.sqrt(np.minimum(0.5 * turn, 1.0)))
-
-
-def _finalists(place: Array, turn: Array) -> NDArray[np.intp]:
-    """(m, FINALISTS) the ends to follow, the best that differ, of those with ½|p - t|² and 1 - cos θ, each (m, k)."""
+def _finalists(place: Array, turn: Array, count: int) -> NDArray[np.intp]:
+    """(m, count) the ends to follow, the best that differ, of those with ½|p - t|² and 1 - cos θ, each (m, k)."""
     order = np.argsort(place + RANKED * turn, axis=1, kind="stable")
     distance = np.take_along_axis(np.sqrt(2.0 * place), order, axis=1)
     angle = np.take_along_axis(np.sqrt(2.0 * turn), order, axis=1)
     alike = np.abs(distance[:, :, None] - distance[:, None]) < ALIKE
     alike &= np.abs(angle[:, :, None] - angle[:, None]) < ALIKE
     again = np.any(alike & np.tri(order.shape[1], k=-1, dtype=bool), axis=2)
-    return np.take_along_axis(order, np.argsort(again, axis=1, kind="stable"), axis=1)[:, :FINALISTS]
+    return np.take_along_axis(order, np.argsort(again, axis=1, kind="stable"), axis=1)[:, :count]
 
 
-def _closest(chain: Chain, distance: Array, angle: Array, move: Array, size: float) -> NDArray[np.intp]:
-    """(m,) the best of ends with distances [size], angles (m, k) and joint moves (m, k, n), by the law above."""
-    turns = chain.revolute[: move.shape[2]]
-    move = np.where(turns, move - 2.0 * np.pi * np.round(move / (2.0 * np.pi)), move / size)
-    farthest = np.max(np.abs(move), axis=2)
+def _leaders(distance: Array, angle: Array, move: Array) -> NDArray[np.intp]:
+    """(m, LEADERS) the best of ends with distances [size], angles (m, k) and joint moves (m, k), followed roughly.
+
+    Half of them are the best by the law; the others are those that may become better yet: at limits the last of a
+    distance vanishes slowly.
+    """
+    nearest = distance.min(axis=1, keepdims=True)
+    law = np.where(distance <= nearest + ROUGH_PLACE, np.round(angle / ROUGH_ANGLE), 1e9 + distance)
+    best = np.lexsort((move, law), axis=1)[:, : LEADERS // 2]
+    hope = (distance - nearest) / HOPE + angle
+    np.put_along_axis(hope, best, np.inf, axis=1)
+    others = np.argsort(hope, axis=1, kind="stable")[:, : LEADERS - LEADERS // 2]
+    return np.concatenate([best, others], axis=1)
+
+
+def _moves(chain: Chain, x: Array, home: Array, own: int) -> Array:
+    """(m, k) the greatest joint move from home (n,) to x: (m, k, n) [rad | size], angles on the circle."""
+    move = (x - home)[:, :, :own]
+    move = np.where(chain.revolute[:own], move - 2.0 * np.pi * np.round(move / (2.0 * np.pi)), move)
+    farthest: Array = np.max(np.abs(move), axis=2)
+    return farthest
+
+
+def _closest(distance: Array, angle: Array, farthest: Array) -> NDArray[np.intp]:
+    """(m,) the best of ends with distances [size], angles and joint moves, each (m, k), by the law above."""
     angle = np.where(distance <= distance.min(axis=1, keepdims=True) + SAME_PLACE, angle, np.inf)
     farthest = np.where(angle <= angle.min(axis=1, keepdims=True) + SAME_ANGLE, farthest, np.inf)
     best: NDArray[np.intp] = np.argmin(farthest, axis=1)

@@ -1,8 +1,13 @@
-"""The elimination on a given arm: which splits serve, which poses are doubtful, and what is tried for those.
+"""The elimination on a given arm: which splits serve, how many complex solutions the arm has, which were found.
 
 Each of the twelve splits of `raghavan_roth` is right, but on an arm whose axes are parallel or meet most of them have
-equations that say nothing. Rather than by reasoning about the geometry, a split is chosen by trying it on poses of
-the arm itself, whose solutions are known.
+equations that say nothing, and others fail where a joint is at a round angle. Rather than by reasoning about the
+geometry, splits are chosen by trying them on poses of the arm itself, round ones among them, and counting.
+
+What is counted. Over the complex numbers an arm has the same number N of solutions at almost every pose, and at no
+pose more isolated ones (A. P. Morgan, A. J. Sommese, "Coefficient-parameter polynomial continuation", Applied
+Mathematics and Computation 29, 1989). So a pose at which N distinct regular solutions were found, real and complex,
+has no other. Where fewer were found something is singular, or the split has lost some: the pose is doubtful.
 
 Where an arm is singular, roots coincide for a reason that no split removes. Links that are wrong by a trifle separate
 them; Newton's steps on the true loop then make up for the trifle.
@@ -10,67 +15,127 @@ them; Newton's steps on the true loop then make up for the trifle.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.inverse.complex_newton import complex_refine, regular_and_distinct
 from robokin.inverse.loop import Candidates, Loop
-from robokin.inverse.newton import closing_at, determinants, refine
-from robokin.inverse.raghavan_roth import PERTURBATION, SHIFT, SPLITS, Elimination
+from robokin.inverse.newton import closing_at, refine
+from robokin.inverse.raghavan_roth import PERTURBATION, SHIFT, SPLITS, STEEPEST, Elimination
 
-__all__ = ["SPLITS", "Elimination", "choose_splits", "doubtful", "rescue_candidates"]
+__all__ = ["SPLITS", "Counted", "Elimination", "choose_splits", "count_solutions", "generic_count", "rescue_candidates"]
 
 Array = NDArray[np.float64]
 
 ORDER = (1, 10, 4, 7, 0, 9, 3, 6, 2, 11, 5, 8)
 """Splits in the order in which they are tried: split 1 serves nine in ten of the arms on sale that have no wrist."""
 
-POSES = 12
-"""Random poses on which a split is tried."""
+GENERIC, ROUND = 4, 10
+"""Random poses on which a split is tried, and poses whose angles are multiples of 30°, where splits differ."""
 
-ENOUGH, PATIENCE = 2, 4
-"""A second split that finds everything, to check the first and to fall back on, is looked for this much further."""
+WORTH = 0.5
+"""A split that finds less than this part of what the best one finds at random poses is no use at any other."""
 
-FOUND = 1e-6
-"""Joint values [rad | size] that agree so well are the same."""
+COUNTING = 3
+"""Splits whose solutions together make N."""
+
+REAL = 1e-7
+"""Imaginary parts [rad | size] below which a refined solution is real."""
+
+STEPS = 2
+"""Newton steps on each of an elimination's solutions, which are good to 1e-9 in 99 % of the cases."""
+
+
+class Counted(NamedTuple):
+    """The number (m,) of distinct regular complex solutions of each target, and the candidates they are among.
+
+    target: (s,) of each candidate; values: (s, 6) complex and refined; kept: (s,) which of them are solutions, regular,
+    and each but once.
+    """
+
+    number: NDArray[np.intp]
+    target: NDArray[np.intp]
+    values: NDArray[np.complex128]
+    kept: NDArray[np.bool_]
+
+
+def count_solutions(
+    loop: Loop, closing: Array, parts: Sequence[tuple[NDArray[np.intp], NDArray[Any]]], steps: int
+) -> Counted:
+    """Counts solutions among candidates (index, values), real and complex; of a conjugate pair one counts for both."""
+    index = np.concatenate([part[0] for part in parts])
+    values = np.concatenate([np.asarray(part[1], dtype=np.complex128) for part in parts])
+    values, residual = complex_refine(loop, closing, index, values, steps)
+    residual[np.any(np.abs(values.imag[:, loop.revolute]) > STEEPEST, axis=1)] = np.inf
+    # Of a pair the one with the greater imaginary part in the first joint that has any stands for both.
+    side = np.sign(np.where(np.abs(values.imag) > REAL, values.imag, 0.0))
+    first = side[np.arange(len(side)), np.argmax(side != 0.0, axis=1)]
+    values = np.where(first[:, None] < 0.0, values.conj(), values)
+    kept = regular_and_distinct(loop, index, values, residual)
+    weight = np.where(first == 0.0, 1, 2) * kept
+    return Counted(np.bincount(index, weights=weight, minlength=len(closing)).astype(np.intp), index, values, kept)
+
+
+def trial_poses(loop: Loop) -> tuple[Array, Array]:
+    """Random joint values (GENERIC, 6), and round ones (ROUND, 6): multiples of 30°, or of a quarter of the size."""
+    spans = np.where(loop.revolute, np.pi, 1.0)
+    rng = np.random.default_rng(7)
+    generic = rng.uniform(-spans, spans, (GENERIC, 6))
+    grid = np.where(loop.revolute, np.pi / 6.0, 0.25)
+    return generic, grid * np.round(rng.uniform(-spans, spans, (ROUND, 6)) / grid)
 
 
 def choose_splits(loop: Loop, values: Array | None = None) -> list[int]:
     """The splits that find solutions of a loop, best first; none if there are none.
 
-    They are tried on poses of the arm itself: random joint values, or those given (k, 6) [rad | size], must be among
-    the answers. Splits of the perturbed loop are tried when no other finds everything.
+    They are tried on poses of the arm itself, or on those of joint values (k, 6) [rad | size], and the complex
+    solutions are counted. Splits of the perturbed loop are tried when no other finds any.
     """
-    if values is None:
-        spans = np.where(loop.revolute, np.pi, 1.0)
-        values = np.random.default_rng(7).uniform(-spans, spans, (POSES, 6))
-    closing = closing_at(loop, values)
-    shares: dict[int, float] = {}
+    generic, round_ = trial_poses(loop)
+    generic = generic if values is None else values
     for splits in (ORDER, tuple(SPLITS + split for split in ORDER)):
-        since = 0
-        for split in splits:
-            shares[split] = _share_found(loop, split, values, closing)
-            perfect = sum(share == 1.0 for share in shares.values())
-            since += perfect > 0
-            if perfect >= ENOUGH or since > PATIENCE:
-                break
-        if perfect:
-            break
-    return sorted((split for split, share in shares.items() if share > 0.0), key=lambda split: -shares[split])
+        found = {split: _count_of_split(loop, split, closing_at(loop, generic)) for split in splits}
+        best = max(found.values())
+        good = [split for split, count in found.items() if count > 0 and count >= WORTH * best]
+        if good:
+            closing = closing_at(loop, round_)
+            more = {split: GENERIC * found[split] + _count_of_split(loop, split, closing) for split in good}
+            return sorted(good, key=lambda split: -more[split])
+    return []
 
 
-def _share_found(loop: Loop, split: int, values: Array, closing: Array) -> float:
-    """The part of the joint values (k, 6) that a split finds."""
+def _count_of_split(loop: Loop, split: int, closing: Array) -> int:
+    """How many distinct regular complex solutions a split finds for some targets, all together."""
     try:
-        found = Elimination(loop, split).candidates(closing)
+        real, complex_ = Elimination(loop, split).all_candidates(closing)
     except np.linalg.LinAlgError:
-        return 0.0
-    refined, _, _ = refine(loop, closing, found.index, found.values, 3)
-    gap = refined - values[found.index]
-    gap = np.where(loop.revolute, gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi)), gap)
-    hits = found.index[np.max(np.abs(gap), axis=1) < FOUND]
-    return len(np.unique(hits)) / len(values)
+        return 0
+    parts = [(real.index, real.values), (complex_.index, complex_.values)]
+    return int(np.sum(count_solutions(loop, closing, parts, STEPS + 2 * (split >= SPLITS)).number))
+
+
+def generic_count(loop: Loop, splits: list[int]) -> int | None:
+    """N, the number of complex solutions at a random pose, as some splits find them together.
+
+    None where it is odd, or no two random poses agree on it: the number cannot be told in this way.
+    """
+    closing = closing_at(loop, trial_poses(loop)[0])
+    parts = []
+    for split in splits[:COUNTING]:
+        try:
+            found = Elimination(loop, split).all_candidates(closing)
+        except np.linalg.LinAlgError:
+            continue
+        parts += [(part.index, part.values) for part in found]
+    if not parts:
+        return None
+    counts = count_solutions(loop, closing, parts, STEPS + 2).number
+    most = int(counts.max())
+    return most if most and most % 2 == 0 and np.sum(counts == most) > 1 else None
 
 
 RESCUES = ((0, 2.3, 0.0), (1, SHIFT, 0.0), (0, SHIFT, 1e-6), (0, SHIFT, 1e-4), (1, 2.3, 1e-5), (1, SHIFT, 1e-3))
@@ -82,22 +147,7 @@ RESCUE_STEPS = 20
 RESCUED = 1e-7
 """A candidate that closes no better [size and rad] after these steps leads nowhere."""
 
-SINGULAR = 1e-5
-"""|det S| of a solution below which others may be lost, about one random pose in a hundred: roots and their vectors
-then lie so near to each other that telling them apart takes more digits than there are."""
-
 _rescuers: WeakKeyDictionary[Loop, dict[tuple[int, float, float], Elimination]] = WeakKeyDictionary()
-
-
-def doubtful(loop: Loop, targets: int, index: NDArray[np.intp], values: Array) -> NDArray[np.bool_]:
-    """Which of some targets (m,) deserve `rescue_candidates`, given their verified and distinct solutions.
-
-    index: (s,) the solutions' targets; values: (s, 6) [rad | size]. At a regular pose solutions come in pairs: none,
-    or an odd number, or one at which the arm is near-singular, asks for a second look.
-    """
-    count = np.bincount(index, minlength=targets)
-    near = index[determinants(loop, values) < SINGULAR]
-    return np.asarray((count % 2 == 1) | (count == 0) | (np.bincount(near, minlength=targets) > 0))
 
 
 def rescue_candidates(loop: Loop, splits: list[int], closing: Array) -> Candidates:

@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.analysis import analysis_of
+from robokin.inverse.nearest_member import nearest_on
 from robokin.inverse.numeric import descend, pose_error
+from robokin.inverse.solution_sets import families
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import CLOSES
 from robokin.kinematics.chain import Chain
@@ -24,6 +26,10 @@ singularity, and there a step is halved while it gets shorter by that."""
 
 HALVINGS = 26
 """How often a step is halved at most, to 1e-8 of itself. A joint that still moves by more than NEAR jumps."""
+
+BEGUN = 1e-6
+"""Part of the line after which its solutions tell how it begins: they are then 1e-6 from where they begin, or 1e-3
+where two meet."""
 
 MOST = 1_000_000
 """Steps of a path at most: what is kept of each is some hundred bytes."""
@@ -88,6 +94,35 @@ class Follower:
         batch = solve_many(self.robot, self.at(np.array([s])), limits=False, near=q, task=self.task)
         return self.chosen(batch.q[0, : batch.count[0]], q)
 
+    def turned_start(self, q: Array, i: int) -> Array | None:
+        """A configuration (n,) with the pose of q (n,), from which a line goes on that q itself does not begin.
+
+        At a singular start joints can trade motion while the tool stands still; the solutions a little way along the
+        line tell from which member of that self-motion it goes on. None where there is none.
+        """
+        if self.numeric:
+            return None
+        chain, size = self.analysis.own, self.analysis.size
+        T = self.at(self.s[i - 1 : i])
+        batch = solve_many(self.robot, self.at(self.s[i - 1 : i] + BEGUN), limits=False, near=q, task=self.task)
+        begun = batch.q[0, : batch.count[0]]
+        moving = self.analysis.moving
+        sets = families(chain, T, np.concatenate([q[moving], np.zeros(self.analysis.open)])[None], size).curves[0]
+        wide = np.tile([-np.inf, np.inf], (len(moving), 1))
+        best: Array | None = None
+        for curve in sets:
+            for other in begun:
+                member = nearest_on(curve, chain, T[0], other[moving], wide, size)
+                if member is None:
+                    continue
+                there = q.copy()
+                there[moving] = member
+                start = self.turned(there, q)
+                near = self.move(start, self.turned(other, start)) <= NEAR
+                if near and (best is None or self.move(q, start) < self.move(q, best)):
+                    best = start
+        return best
+
     def listed(self, i: int) -> Array:
         """All configurations (k, n) at place i, some poses ahead solved with them."""
         if self.block is None or not self.block[0] <= i < self.block[0] + BLOCK:
@@ -95,6 +130,11 @@ class Follower:
             self.block = i, batch.q, batch.count
         first, rows, count = self.block
         return rows[i - first, : count[i - first]]
+
+    def turned(self, x: Array, q: Array) -> Array:
+        """A configuration x (n,) with its angles turned as near to q (n,) as they come."""
+        gap = x - q
+        return np.asarray(q + np.where(self.robot.revolute, gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi)), gap))
 
     def chosen(self, rows: Array, q: Array) -> Array | None:
         """The nearest of the rows (k, n), angles turned as near to q as they come."""

@@ -115,6 +115,13 @@ def moved(turns: bool, free_turns: bool, g: Array, f: Array) -> Array:
     """By how much (s,) a joint moves the functions g (s, 15) to f (s, 15)."""
     if turns:
         gx, gy, fx, fy = g[:, X_PARTS], g[:, X_PARTS + 1], f[:, X_PARTS], f[:, X_PARTS + 1]
+        if np.iscomplexobj(f):
+            # f_x ± i f_y is g_x ± i g_y times e^(±iq).
+            plus, minus = gx + 1j * gy, gx - 1j * gy
+            a, b = np.sum(np.square(np.abs(plus)), axis=1), np.sum(np.square(np.abs(minus)), axis=1)
+            forth, back = np.sum(plus.conj() * (fx + 1j * fy), axis=1), np.sum(minus.conj() * (fx - 1j * fy), axis=1)
+            known = np.where(np.abs(forth) * b >= np.abs(back) * a, forth / a, back / b)
+            return np.asarray(np.where(np.abs(forth) * b >= np.abs(back) * a, -1j, 1j) * np.log(known))
         return np.asarray(np.arctan2(np.sum(gx * fy - gy * fx, axis=1), np.sum(gx * fx + gy * fy, axis=1)))
     if free_turns:
         return np.asarray(f[:, 6] - g[:, 6])  # p
@@ -122,6 +129,18 @@ def moved(turns: bool, free_turns: bool, g: Array, f: Array) -> Array:
     growth = np.stack([g[:, 8], -g[:, 7], g[:, 3], g[:, 6]], axis=1)
     moved = np.sum(growth * (f - g)[:, [10, 11, 13, 14]], axis=1)
     return np.asarray(moved / np.maximum(np.sum(growth * growth, axis=1), 1e-300))
+
+
+def angle_of(c: Array, s: Array, scale: Array | float) -> Array:
+    """The angle (s,) of a cosine and a sine times a scale, which is positive where they are real.
+
+    A complex angle q is read from the greater of e^(±iq) = cos q ± i sin q: in the other one they cancel.
+    """
+    if np.iscomplexobj(c):
+        plus, minus = (c + 1j * s) / scale, (c - 1j * s) / scale
+        greater = np.abs(plus) >= np.abs(minus)
+        return np.asarray(np.where(greater, -1j, 1j) * np.log(np.where(greater, plus, minus)))
+    return np.asarray(np.arctan2(s, c))
 
 
 def _dot(a: Array, b: Array) -> Array:

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.entries import Array, Entry
+from robokin.inverse.entries import Array, Entry, plus, times
 from robokin.inverse.forms import Motion
 from robokin.inverse.loop import Candidates
 from robokin.inverse.trigonometry import Mask
@@ -47,10 +47,36 @@ def gathered(index: Index, values: Mapping[int, Entry], real: Mask) -> Candidate
     if not keep.all():
         kept = np.flatnonzero(keep)
         table, index = table.take(kept, axis=1), index.take(kept)
-    return Candidates(index, table.T)
+    return Candidates(index, table.T, leaves=math.prod(shape[:-1]))
 
 
 def joined(first: Candidates, second: Candidates) -> Candidates:
-    """The candidates of both."""
+    """The candidates of both; the second's are more for targets of the first."""
     values = np.concatenate([first.values.T, second.values.T], axis=1).T
-    return Candidates(np.concatenate([first.index, second.index]), values)
+    return Candidates(np.concatenate([first.index, second.index]), values, leaves=first.leaves)
+
+
+LEVER = 1e-4
+"""A lever [size], or a sine, below which the joint that it belongs to is nearly free. Whether the arm is near-singular
+there is then looked at closely."""
+
+
+class Marks:
+    """Which of m targets have an axis that is nearly free (`near`), or an equation that says nothing (`loose`)."""
+
+    def __init__(self, m: int) -> None:
+        self.near = np.zeros(m, dtype=bool)
+        self.loose = np.zeros(m, dtype=bool)
+
+    def short(self, x: Entry, y: Entry, index: Index) -> None:
+        """Mark the targets index (k,) where a lever (x, y) (…, k) is short on some branch."""
+        square = np.asarray(plus(times(x, x), times(y, y)))
+        if square.ndim == 0:
+            return  # of the arm, not of a target
+        short = square < LEVER**2
+        if short.any():
+            self.near[index] |= short.reshape(-1, short.shape[-1]).any(axis=0)
+
+    def on(self, found: Candidates) -> Candidates:
+        """The candidates with the marks."""
+        return Candidates(found.index, found.values, found.leaves, self.near, self.loose)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.kinematics.chain import Chain
+from robokin.kinematics.chain import Chain, chain_size
 from robokin.spatial import invert
 
 Array = NDArray[np.float64]
@@ -48,11 +48,23 @@ class Candidates:
     """What a solver finds for a block of targets, before it is verified.
 
     index: (s,) the target in the block that each candidate is for; values: (s, 6) the arguments of
-    J1 … J6 [rad | size], joint offsets included.
+    J1 … J6 [rad | size], joint offsets included. Of a closed form: leaves, how many roots its equations have in all,
+    real or not; near, loose: (m,) the targets where an axis is nearly free, or an equation says nothing.
     """
 
     index: NDArray[np.intp]
     values: Array
+    leaves: int | None = None
+    near: NDArray[np.bool_] | None = None
+    loose: NDArray[np.bool_] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class ComplexCandidates:
+    """The same for complex solutions: values (s, 6) complex; of each conjugate pair one."""
+
+    index: NDArray[np.intp]
+    values: NDArray[np.complex128]
 
 
 def loop_of(chain: Chain) -> Loop:
@@ -61,9 +73,3 @@ def loop_of(chain: Chain) -> Loop:
     constants = chain.constants.copy()
     constants[:, :3, 3] /= size
     return Loop(chain.revolute, constants[1:6], constants[0], constants[6], size)
-
-
-def chain_size(chain: Chain) -> float:
-    """The size of an arm [m]: the lengths of its constant transforms from joint to joint added up, or 1."""
-    lengths = np.linalg.norm(chain.constants[1:, :3, 3], axis=1)
-    return float(np.sum(lengths)) or 1.0

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.analysis import Analysis
+from robokin.inverse.initial_guesses import between
 from robokin.inverse.numeric import descend, error_and_jacobian
 from robokin.inverse.padding import joint_frames_of
-from robokin.inverse.verify import CLOSES, Found, nothing
+from robokin.inverse.verify import CLOSES, Found, closing_distances, nothing
 from robokin.kinematics.chain import Chain
 
 Array = NDArray[np.float64]
@@ -33,9 +34,8 @@ singularity shows (1e-3), near enough to come back to the curve by a few Newton 
 def starts(chain: Chain, limits: Array, size: float, count: int, seed: int) -> Array:
     """Random configurations (count, n) within the limits, or a turn and two arm's sizes where there are none."""
     reach = np.where(chain.revolute, np.pi, size)
-    low = np.where(np.isinf(limits[:, 0]), -reach, limits[:, 0])
-    high = np.where(np.isinf(limits[:, 1]), reach, limits[:, 1])
-    return low + (high - low) * np.random.default_rng(seed).random((count, chain.n))
+    ends = np.where(np.isinf(limits), reach[:, None] * [-1.0, 1.0], limits)
+    return between(chain, ends, size, np.random.default_rng(seed).random((count, chain.n)))
 
 
 def numeric_solutions(
@@ -57,7 +57,7 @@ def numeric_solutions(
         best = np.argsort(np.sum(error * error, axis=1), kind="stable")[:count]
         q, error = descend(chain, many[: len(best)], drawn[best], analysis.size, limits=wide, steps=60)
         position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
-        closes = (position <= CLOSES) & (angle <= CLOSES)
+        closes = (position * analysis.size <= closing_distances(chain, q, analysis.size)) & (angle <= CLOSES)
         found = Found(np.full(len(q), i), q[:, :own], position * analysis.size, angle).pick(closes)
         parts = Found(
             np.concatenate([parts.index, found.index]),

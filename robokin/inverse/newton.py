@@ -28,10 +28,15 @@ STEP = 0.5
 """The longest step of one joint [rad | size]: further off, the tangent says nothing of the curve."""
 
 FLOOR = 1e-15
-"""Least damping |e|²: some four times the rounding of SᵀS, so that its factors stay positive."""
+"""Least damping of joint i as a part of |s_i|²: some four times the rounding of SᵀS, so that its factors stay
+positive. |s_i| is great where the axis is far from the origin, as a slide that is long against the arm puts it."""
 
 DONE = 1e-14
 """Candidates whose error [size and rad] is less are left alone: some ten times the rounding of X."""
+
+LONG = 30.0
+"""A slide [size] above which SᵀS, whose singular values are squares of ratios of links and slides, has too few digits,
+and the step comes from the singular values of S itself."""
 
 BLOCK = 2048
 """Candidates at a time: the forty or so numbers of each (650 kB) stay in the second-level cache."""
@@ -47,27 +52,52 @@ def refine(
     """
     refined = np.array(values, dtype=np.float64)
     position, angle = np.empty(len(refined)), np.empty(len(refined))
+    slides = np.flatnonzero(~loop.revolute)
     # Columns x, y, z, p of L6, each (3, m): rows are the entries of what comes before in X.
     last = np.ascontiguousarray(closing[:, :3].transpose(2, 1, 0))
-    for start in range(0, len(refined), BLOCK):
-        part = np.arange(start, min(start + BLOCK, len(refined)))
-        q, L = refined[part].T.copy(), last[..., index[part]]
-        for step in range(steps + 1):
-            axes, error = _follow(loop, L, q)
-            squares = error * error
-            v, w = squares[:3].sum(axis=0), squares[3:].sum(axis=0)
-            open_ = v + w > DONE * DONE
-            ready = step == steps or not open_.any()
-            if ready or np.count_nonzero(open_) < 0.75 * len(part):
-                done = slice(None) if ready else ~open_
-                refined[part[done]] = q.T[done]
-                position[part[done]], angle[part[done]] = np.sqrt(v[done]), np.sqrt(w[done])
-                if ready:
-                    break
-                part, q, L = part[open_], q[:, open_], L[..., open_]
-                axes, error = axes[..., open_], error[:, open_]
-            q += _step(_twists(loop, axes), error)
+    # Values that run away are no numbers in the end, and close nothing.
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        for start in range(0, len(refined), BLOCK):
+            part = np.arange(start, min(start + BLOCK, len(refined)))
+            q, L = refined[part].T.copy(), last[..., index[part]]
+            far = _farness(loop, q)
+            for step in range(steps + 1):
+                axes, error = _follow(loop, L, q)
+                error[:3] /= far
+                squares = error * error
+                v, w = squares[:3].sum(axis=0), squares[3:].sum(axis=0)
+                open_ = v + w > DONE * DONE
+                ready = step == steps or not open_.any()
+                if ready or np.count_nonzero(open_) < 0.75 * len(part):
+                    done = slice(None) if ready else ~open_
+                    refined[part[done]] = q.T[done]
+                    position[part[done]], angle[part[done]] = far[done] * np.sqrt(v[done]), np.sqrt(w[done])
+                    if ready:
+                        break
+                    part, q, L, far = part[open_], q[:, open_], L[..., open_], far[open_]
+                    axes, error = axes[..., open_], error[:, open_]
+                    open_ = open_[open_]
+                S = _twists(loop, axes)
+                S[:, :3] /= far
+                S[slides] *= far
+                dq = _step(S, error)
+                if (long := far > LONG).any():
+                    dq[:, long] = (
+                        -STEP * limited(singular_step(S[..., long].transpose(2, 1, 0), error[:, long].T) / STEP).T
+                    )
+                dq[slides] *= far
+                # What has arrived stays, so that it does not depend on the others.
+                q += dq * open_
     return refined, position, angle
+
+
+def _farness(loop: Loop, q: Array) -> Array:
+    """(s,) the longest slide of q (6, s) [size], at least 1: the unit of lengths in a step.
+
+    A turn moves the end of a long slide by that much, and what rounding leaves of its position would otherwise
+    outweigh the whole error of its orientation.
+    """
+    return np.asarray(np.max(np.abs(q[~loop.revolute]), axis=0, initial=1.0))
 
 
 def determinants(loop: Loop, values: Array) -> Array:
@@ -89,7 +119,7 @@ def closing_at(loop: Loop, values: Array) -> Array:
 
 def joint_motion(turns: bool, q: Array) -> Array:
     """J (s, 4, 4) at q (s,)."""
-    J = np.zeros((len(q), 4, 4))
+    J = np.zeros((len(q), 4, 4), dtype=q.dtype)
     J[:, (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
     if turns:
         c, s = np.cos(q), np.sin(q)
@@ -149,6 +179,23 @@ def _twists(loop: Loop, axes: Array) -> Array:
     return S
 
 
+def singular_step(S: Array, error: Array, damping: Array | None = None) -> Array:
+    """The dq (s, n) with (SᵀS + damping I) dq = Sᵀe, from the singular values of S (s, 6, n); error: (s, 6).
+
+    damping: (s,), |e|² if it is not given.
+    """
+    U, values, Vt = np.linalg.svd(S, full_matrices=False)
+    least = np.einsum("si,si->s", error, error) if damping is None else damping
+    squares = values * values + least[:, None] + (np.finfo(float).eps * values[:, :1]) ** 2
+    part = np.einsum("sik,si->sk", U, error) * values / np.maximum(squares, np.finfo(float).tiny)
+    return np.asarray(np.einsum("ski,sk->si", Vt, part))
+
+
+def limited(dq: Array) -> Array:
+    """Steps (s, n) shortened so that no joint moves by more than 1."""
+    return np.asarray(dq / np.maximum(np.max(np.abs(dq), axis=1, keepdims=True), 1.0))
+
+
 def _step(S: Array, error: Array) -> Array:
     """The damped Newton step (6, s) for twists (joint, 6, s) and error (6, s), by elimination."""
     s = error.shape[1]
@@ -156,9 +203,9 @@ def _step(S: Array, error: Array) -> Array:
     for i in range(6):
         np.einsum("cs,jcs->js", S[i], S[i:], out=M[i, i:6])
     np.einsum("cs,jcs->js", error, S, out=M[:, 6])
-    damping = np.einsum("cs,cs->s", error, error) + FLOOR
+    damping = np.einsum("cs,cs->s", error, error)
     for i in range(6):
-        M[i, i] += damping
+        M[i, i] += damping + FLOOR * M[i, i]
     for k in range(5):
         # The matrix stays symmetric: column k below the diagonal is row k beside it.
         factors = M[k, k + 1 : 6] / M[k, k]

@@ -14,6 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.inverse.newton import LONG, singular_step
 from robokin.inverse.padding import joint_frames_of
 from robokin.kinematics.chain import Chain
 
@@ -25,8 +26,12 @@ STEP = 0.6
 DAMPING = 1e-2
 """λ as a part of the squared error; Sugihara's range is 1e-3 to 1e-1."""
 
+ARRIVED = 1e-26
+"""Squared error [size and rad] at which the steps end: they are quadratic, and the next would be rounding."""
+
 FLOOR = 1e-13
-"""Least λ, so that the matrix has an inverse at a singular configuration."""
+"""Least λ of a joint as a part of its |column of J|², so that the matrix has an inverse at a singular configuration;
+the column is great where the axis is far from the tool, as a long slide puts it."""
 
 
 def pose_error(T: Array, found: Array, size: float) -> Array:
@@ -68,20 +73,34 @@ def descend(
     best, least = x.copy(), np.full(len(x), np.inf)
     error = np.zeros((len(x), 6))
     identity = np.eye(chain.n)
+    # Lengths in the longest slide: what rounding leaves of positions would outweigh the errors of orientation.
+    far = np.max(np.abs(x[:, ~chain.revolute]), axis=1, initial=1.0)[:, None]
+    unit, long = np.where(chain.revolute, 1.0, far), far[:, 0] > LONG
     for step in range(steps + 1):
         e, J = error_and_jacobian(chain, T, x * scale, size)
+        e[:, :3] /= far
+        J[:, :3] /= far[:, :, None]
+        J *= unit[:, None]
         squared = np.sum(e * e, axis=1)
         better = squared <= least
         best[better], least[better], error[better] = x[better], squared[better], e[better]
-        if step == steps or np.all(least < 1e-26):
+        # What has arrived stays: where a row ends must not depend on the others.
+        done = least * far[:, 0] ** 2 < ARRIVED
+        if step == steps or done.all():
             break
         gradient = np.einsum("sij,si->sj", J, e)
         # A joint at its limit that the gradient pushes outwards takes no part.
         held = ((x <= low) & (gradient < 0.0)) | ((x >= high) & (gradient > 0.0))
         J = np.where(held[:, None, :], 0.0, J)
-        damping = np.minimum(DAMPING * squared, 1.0) + FLOOR
-        M = np.swapaxes(J, 1, 2) @ J + damping[:, None, None] * identity
+        M = np.swapaxes(J, 1, 2) @ J
+        damping = np.minimum(DAMPING * squared, 1.0)[:, None]
+        damping = damping + FLOOR * np.where(held, 1.0, np.diagonal(M, axis1=1, axis2=2))
+        M += damping[:, :, None] * identity
         dx = np.linalg.solve(M, np.where(held, 0.0, gradient)[:, :, None])[:, :, 0]
+        if long.any():
+            dx[long] = singular_step(J[long], e[long], np.minimum(DAMPING * squared[long], 1.0))
         dx *= (STEP / np.maximum(np.max(np.abs(dx), axis=1), STEP))[:, None]
-        x = np.clip(x + dx, low, high)
+        dx[done] = 0.0
+        x = np.clip(x + dx * unit, low, high)
+    error[:, :3] *= far
     return best * scale, error

@@ -22,8 +22,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.loop import chain_size
-from robokin.kinematics.chain import Chain, exact, z_to
+from robokin.kinematics.chain import Chain, chain_size, exact, z_to
 from robokin.kinematics.columns import Constant, Plan
 from robokin.spatial import invert, translation_transform
 

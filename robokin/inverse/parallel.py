@@ -63,7 +63,7 @@ from robokin.inverse.entries import (
     transposed,
 )
 from robokin.inverse.forms import FAN, LENGTHS, LOOSE, Form, Motion, Prismatic, Revolute, combined, kind, loose
-from robokin.inverse.gather import Index, chosen_positions, gathered, in_front, joined
+from robokin.inverse.gather import Index, Marks, chosen_positions, gathered, in_front, joined
 from robokin.inverse.loop import Candidates, Loop
 from robokin.inverse.pair import RANK, Pair
 from robokin.inverse.trigonometry import CLAMP, Mask, Turn, linear_roots, normalized, turn_between
@@ -157,18 +157,21 @@ class ThreeParallel:
             A = self.A or target
             D = self.D or target
             index = np.arange(len(closing))
+            marks = Marks(len(closing))
             if not self.rank:
-                return self._sliding(A, D, index)
+                return marks.on(self._sliding(A, D, index, marks))
             f = self._equations(A, D)
             q_a, real, loose = self._first(f)
-            found = self._from_first(A, D, f, q_a, real, index)
+            found = self._from_first(A, D, f, q_a, real, index, marks)
             if loose is None:
-                return found
+                return marks.on(found)
+            marks.loose |= loose
             # q_a's equation says nothing: whatever q_a the others can serve.
             index = index[np.broadcast_to(loose, index.shape)]
             real = np.ones((len(FAN), 1), dtype=bool)
             A, D = taken(A, index), taken(D, index)
-            return joined(found, self._from_first(A, D, self._equations(A, D), Revolute.fan, real, index))
+            more = self._from_first(A, D, self._equations(A, D), Revolute.fan, real, index, marks)
+            return marks.on(joined(found, more))
 
     def _offset(self, D: Frame) -> Entry:
         """What the height has of no joint."""
@@ -191,7 +194,9 @@ class ThreeParallel:
             equation = combined((1.0, -self.G.ratio), (f[self.G.rest], f[self.G.main]))
         return *Revolute.roots(equation), loose(equation)
 
-    def _from_first(self, A: Frame, D: Frame, f: list[Form], q_a: Motion, real: Mask, index: Index) -> Candidates:
+    def _from_first(
+        self, A: Frame, D: Frame, f: list[Form], q_a: Motion, real: Mask, index: Index, marks: Marks
+    ) -> Candidates:
         """The candidates for given q_a, case 1."""
         w = applied_back(A.R, Revolute.back(q_a, D.R[2]))
         if self.rank == 2:
@@ -208,7 +213,8 @@ class ThreeParallel:
                 q_b = turn_between(applied(self.B.R, Revolute.onward(q_c, self.u)), w)
             q_b, q_c = (_in_front(turn, real) for turn in (q_b, q_c))
             real = real[None] & in_front(reached, real)
-        return self._elbows_and_families(A, D, (q_a, q_b, q_c), real, _square(w), index)
+        marks.short(w[0], w[1], index)
+        return self._elbows_and_families(A, D, (q_a, q_b, q_c), real, _square(w), index, marks)
 
     def _directions(self, A: Frame, D: Frame) -> tuple[Matrix, Vector, Vector]:
         """P, s and w of Rz(α) P Rz(β) s = w, case 2."""
@@ -218,24 +224,27 @@ class ThreeParallel:
             return self.B.R, self.u, applied_back(A.R, D.R[2])
         return transposed(A.R), D.R[2], applied(self.B.R, self.u)
 
-    def _sliding(self, A: Frame, D: Frame, index: Index) -> Candidates:
+    def _sliding(self, A: Frame, D: Frame, index: Index, marks: Marks) -> Candidates:
         """The candidates, case 2."""
         P, s, w = self._directions(A, D)
         alpha, beta, real = two_turns(P, s, w)
-        found = self._from_turns(A, D, alpha, beta, real, index)
+        found = self._from_turns(A, D, alpha, beta, real, index, marks)
         aligned = np.asarray(times(_square(P[2]), _square(s)) < LOOSE**2) & real[0]
         if not aligned.any():
             return found
         # Two axes are parallel: β turns the direction about itself, or α undoes what β does.
         chosen = np.flatnonzero(np.broadcast_to(aligned, index.shape))
         A, D, index = taken(A, chosen), taken(D, chosen), index[chosen]
+        marks.loose[index] = True
         P, s, w = self._directions(A, D)
         fan = Revolute.fan
         alpha = turn_between(applied(P, Revolute.onward(fan, s)), w)
         every = np.ones((len(FAN), 1), dtype=bool)
-        return joined(found, self._from_turns(A, D, alpha, fan, every, index))
+        return joined(found, self._from_turns(A, D, alpha, fan, every, index, marks))
 
-    def _from_turns(self, A: Frame, D: Frame, alpha: Motion, beta: Motion, real: Mask, index: Index) -> Candidates:
+    def _from_turns(
+        self, A: Frame, D: Frame, alpha: Motion, beta: Motion, real: Mask, index: Index, marks: Marks
+    ) -> Candidates:
         """The candidates for given α and β, case 2: the height gives the length."""
         h, u = D.R[2], self.u
         before: Vector
@@ -261,18 +270,20 @@ class ThreeParallel:
             positions = q_a, length, q_c
         else:
             positions = (length, q_b, q_c) if self.a is Prismatic else (q_a, q_b, length)
-        found = self._elbows_and_families(A, D, positions, real, lever, index)
+        marks.short(slope, 0.0, index)
+        found = self._elbows_and_families(A, D, positions, real, lever, index, marks)
         lost = lost & real & (np.abs(np.asarray(height)) < LOOSE)
         if not lost.any():
             return found
         # The sliding axis is at right angles to the direction: whatever length the elbow can serve.
         here, chosen = chosen_positions(positions, lost)
         here[[self.a, self.b, self.c].index(Prismatic)] = Prismatic.fan
+        marks.loose[index[chosen]] = True
         every = np.ones((len(LENGTHS), 1), dtype=bool)
         return joined(found, self._plane(taken(A, chosen), taken(D, chosen), here, every, index[chosen]))
 
     def _elbows_and_families(
-        self, A: Frame, D: Frame, positions: Sequence[Motion], real: Mask, lever: Entry, index: Index
+        self, A: Frame, D: Frame, positions: Sequence[Motion], real: Mask, lever: Entry, index: Index, marks: Marks
     ) -> Candidates:
         """The candidates for given positions of a, b, c; lever: the squared sine that decides the free joint's."""
         found = self._plane(A, D, positions, real, index)
@@ -280,6 +291,7 @@ class ThreeParallel:
         if not free.any():
             return found
         here, chosen = chosen_positions(positions, free)
+        marks.loose[index[chosen]] = True
         return joined(found, self._family(taken(A, chosen), taken(D, chosen), here, index[chosen]))
 
     def _plane(self, A: Frame, D: Frame, positions: Sequence[Motion], real: Mask, index: Index) -> Candidates:

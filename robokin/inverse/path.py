@@ -7,6 +7,8 @@ A straight line: the position moves linearly with s, the rotation about one fixe
 kinematics solutions at a pose the one nearest to the last configuration is taken. Where that moves a joint by more than
 NEAR, the step is halved, again and again: near a singularity a joint may move fast, and a finer step shows that it
 still moves; a step that stays large however fine it is made is a jump to another branch, and the line ends before it.
+Where the start is singular the line may begin from another configuration with its pose, to which joints turn while the
+tool stands still: the second row then stands for that motion too.
 Redundant arms, and arms that lack directions that the task leaves open, are followed by steps of least joint motion.
 """
 
@@ -133,6 +135,10 @@ def follow_line(
         if event is not None:
             break
         reached, q, why = follower.advance(rows[-1], float(s[i - 1]), i)
+        if why == "jump" and i == 1:
+            turned = follower.turned_start(first, i)
+            if turned is not None:
+                reached, q, why = follower.advance(turned, float(s[0]), i)
         if limits and not robot.within_limits(q):
             fraction, event = _limit_event(robot, follower, rows[-1], float(s[i - 1]), reached)
         elif why:

@@ -34,13 +34,14 @@ and Automation 10(5), 1994. That A(XY) = A(X) A(Y), which spares all symbols, an
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse import fourteen, pencil
-from robokin.inverse.fourteen import X_PARTS
-from robokin.inverse.loop import Candidates, Loop
+from robokin.inverse.fourteen import X_PARTS, angle_of
+from robokin.inverse.loop import Candidates, ComplexCandidates, Loop
 from robokin.inverse.newton import joint_motion
 from robokin.spatial import invert, rotation_from_rpy, transform
 
@@ -67,6 +68,15 @@ LARGEST = 1e100
 FARTHEST = 1e6
 """A joint that is to slide further than this [size] comes from a root at infinity."""
 
+REAL = 1e-9
+"""Im x above which a root is also tried as what it is, a complex one: up to `IMAGINARY` it may be either."""
+
+STEEPEST = 20.0
+"""An imaginary part of an angle [rad] beyond this comes from a root at ±i: sines of 1e8 have lost the arm."""
+
+SPURIOUS = 1e-6
+"""|x² + 1| of a root that is one of the equations' own x = ±i, but for rounding of a multiple root."""
+
 # The half-angle tangent's (1, y, y²) make (1 + y²) (1, cos, sin).
 _HALF = np.array([[1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0]])
 
@@ -91,6 +101,7 @@ class Elimination:
             None if i == 5 else (invert(loop.links[i]) if self.backwards else loop.links[i])[None] for i in after
         ]
         turns = [bool(loop.revolute[i]) for i in self.joints]
+        self._turning = np.flatnonzero(loop.revolute)
         self._turns, self._free_turns = turns, turns[3]
         self._forth = [fourteen.joint_action(turns[i], turns[3]) for i in range(3)]
         self._back = {i: fourteen.joint_action(turns[i], turns[3], backwards=True) for i in (4, 5)}
@@ -106,6 +117,10 @@ class Elimination:
 
     def candidates(self, closing: Array) -> Candidates:
         """Approximate solutions for L6 (m, 4, 4)."""
+        return self.all_candidates(closing, complex_too=False)[0]
+
+    def all_candidates(self, closing: Array, complex_too: bool = True) -> tuple[Candidates, ComplexCandidates]:
+        """Approximate solutions for L6 (m, 4, 4): the real ones, and one of each conjugate pair of the complex ones."""
         links = self._around(closing)
         E, turning, V = self._equations(links)
         if self._degrees is not None:
@@ -114,19 +129,38 @@ class Elimination:
             C, kept = pencil.of_quadratic(E, self._turns[0], self._shift)
         roots, vectors = pencil.eigenvectors(np.broadcast_to(C, (len(closing), *C.shape[1:])))
         size = np.minimum(np.abs(roots), LARGEST)
-        index, which = np.nonzero(np.abs(roots.imag) <= self.imaginary * (1.0 + size * size))
-        near, v = roots[index, which], vectors[index, : 12 if kept is None else kept.shape[-1], which]
-        if kept is not None:
-            v = (_of(kept, index) @ v[..., None])[..., 0]
-        near, v = pencil.separated(index, near, v)
+        imaginary = self.imaginary * (1.0 + size * size)
+
+        def products(index: NDArray[np.intp], which: NDArray[np.intp]) -> NDArray[np.complex128]:
+            v = vectors[index, : 12 if kept is None else kept.shape[-1], which]
+            return v if kept is None else (_of(kept, index) @ v[..., None])[..., 0]
+
+        index, which = np.nonzero(np.abs(roots.imag) <= imaginary)
+        near, v = pencil.separated(index, roots[index, which], products(index, which))
         # Two real roots that are so near that they come out as a pair x ± iδ are taken for x ± δ.
-        x, products = near.real + near.imag, v.real + v.imag
-        values = np.empty((len(x), 6))
+        real = Candidates(*self._candidates(links, V, index, near.real + near.imag, v.real + v.imag))
+        if not complex_too:
+            return real, ComplexCandidates(np.empty(0, dtype=np.intp), np.empty((0, 6), dtype=complex))
+        # Spurious roots x = ±i stand for no angle.
+        index, which = np.nonzero((roots.imag > REAL) & (np.abs(roots * roots + 1.0) > SPURIOUS))
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            found = self._candidates(links, V, index, roots[index, which], products(index, which))
+        return real, ComplexCandidates(*found)
+
+    def _candidates(
+        self, links: list[Array], V: Array, index: NDArray[np.intp], x: NDArray[Any], products: NDArray[Any]
+    ) -> tuple[NDArray[np.intp], NDArray[Any]]:
+        """Targets and values of candidates for roots x (s,) and products (s, 12), all real or all complex.
+
+        index: (s,) the targets that they belong to.
+        """
+        values = np.empty((len(x), 6), dtype=x.dtype)
         values[:, self.joints] = self._joint_values(links, V, index, x, products).T
         if self.backwards:
             values = -values
         sound = np.all(np.abs(values) < FARTHEST, axis=1)
-        return Candidates(index[sound], values[sound])
+        sound &= np.all(np.abs(values.imag[:, self._turning]) < STEEPEST, axis=1)
+        return index[sound], values[sound]
 
     def _around(self, closing: Array) -> list[Array]:
         """M0 … M5, each (1, 4, 4) or, the one that is L6 or its inverse, (m, 4, 4)."""
@@ -151,10 +185,10 @@ class Elimination:
 
     def _joint_values(self, M: list[Array], V: Array, index: NDArray[np.intp], x: Array, v: Array) -> Array:
         """The values (6, s) of all joints for roots x (s,) and products v (s, 12)."""
-        turns, q = self._turns, np.empty((6, len(x)))
+        turns, q = self._turns, np.empty((6, len(x)), dtype=x.dtype)
         q[0] = 2.0 * np.arctan(x) + self._shift if turns[0] else _within_reach(np.tan(np.arctan(x) + self._shift))
         products = v.reshape(-1, 4, 3)
-        squares, s = products * products, np.arange(len(x))
+        squares, s = np.square(np.abs(products)), np.arange(len(x))
         q[1] = _ratio(products[s, :, np.argmax(squares.sum(axis=1), axis=1)], turns[1])
         q[2] = _ratio(products[s, np.argmax(squares.sum(axis=2), axis=1)], turns[2])
         X = _of(M[5], index)
@@ -164,14 +198,16 @@ class Elimination:
         # Joint 5 leaves some functions alone: in these joint 4 is found, by least squares in (c, s) or (d, d²).
         B = V[:, self._left_alone]
         a, b, e = B[..., 1], B[..., 2], f[:, self._left_alone] - B[..., 0]
-        aa, ab, bb, ae, be = (np.einsum("sk,sk->s", u, w) for u, w in ((a, a), (a, b), (b, b), (a, e), (b, e)))
+        ah, bh = (a.conj(), b.conj()) if np.iscomplexobj(a) else (a, b)
+        aa, ab, bb, ae, be = (np.einsum("sk,sk->s", u, w) for u, w in ((ah, a), (ah, b), (bh, b), (ah, e), (bh, e)))
         if turns[4]:
-            q[4] = np.arctan2(aa * be - ab * ae, bb * ae - ab * be)
+            ba = ab.conj() if np.iscomplexobj(ab) else ab
+            q[4] = angle_of(bb * ae - ab * be, aa * be - ba * ae, aa * bb - ab * ba)
             powers = np.cos(q[4]), np.sin(q[4])
         else:
-            area = aa * bb - ab * ab
+            area = (aa * bb - ab * (ab.conj() if np.iscomplexobj(ab) else ab)).real
             # Where d² does not occur its coefficients are rounding.
-            straight = area <= 1e-20 * aa * aa
+            straight = area <= 1e-20 * (aa * aa).real
             q[4] = np.where(straight, ae / (aa + 1e-300), (bb * ae - ab * be) / np.where(straight, 1.0, area))
             q[4] = _within_reach(q[4])
             powers = q[4], q[4] * q[4]
@@ -183,8 +219,8 @@ class Elimination:
             @ joint_motion(turns[4], -q[4])
             @ _of(invert(M[3]), index)
         )
-        D = invert(X) @ Y
-        q[3] = np.arctan2(D[:, 1, 0] - D[:, 0, 1], D[:, 0, 0] + D[:, 1, 1]) if turns[3] else D[:, 2, 3]
+        D = _inverse(X) @ Y
+        q[3] = angle_of(D[:, 0, 0] + D[:, 1, 1], D[:, 1, 0] - D[:, 0, 1], 2.0) if turns[3] else D[:, 2, 3]
         return q
 
 
@@ -202,6 +238,15 @@ def _times_joint(joint: Array, V: Array) -> Array:
     return np.swapaxes(products, 1, 2).reshape(-1, 15, 3 * k)
 
 
+def _inverse(X: Array) -> Array:
+    """The inverses of rigid motions (s, 4, 4), real or complex."""
+    out = np.zeros_like(X)
+    out[:, :3, :3] = np.swapaxes(X[:, :3, :3], 1, 2)
+    out[:, :3, 3:] = -out[:, :3, :3] @ X[:, :3, 3:]
+    out[:, 3, 3] = 1.0
+    return out
+
+
 def _of(array: Array, index: NDArray[np.intp]) -> Array:
     """What candidates with an index (s,) have of an array (b, ...): (s, ...), or (1, ...) if all have the same."""
     return array if len(array) == 1 else array[index]
@@ -212,6 +257,9 @@ def _ratio(powers: Array, turns: bool) -> Array:
     low = np.abs(powers[:, 0]) >= np.abs(powers[:, -1])
     one, y = np.where(low, powers[:, :2].T, powers[:, -2:].T)
     if turns:
+        if np.iscomplexobj(y):
+            # tan(q / 2) = y / one
+            return np.asarray(-1j * np.log((one + 1j * y) / (one - 1j * y)))
         return np.asarray(2.0 * np.arctan2(y, one))
     far = np.abs(y) >= FARTHEST * np.abs(one)
     return _within_reach(np.where(far, FARTHEST, y / np.where(far, 1.0, one)))
@@ -219,4 +267,4 @@ def _ratio(powers: Array, turns: bool) -> Array:
 
 def _within_reach(d: Array) -> Array:
     """What a joint slides (s,), kept so small that its square and the like are still numbers."""
-    return np.clip(d, -FARTHEST, FARTHEST)
+    return d if np.iscomplexobj(d) else np.clip(d, -FARTHEST, FARTHEST)

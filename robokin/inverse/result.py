@@ -30,13 +30,48 @@ class Solution:
 
 
 @dataclass(frozen=True, eq=False)
+class Arc:
+    """A piece of a self-motion that lies within the joint limits.
+
+    q: (k, n) [rad | m] configurations along it, each reaching the pose; the first and the last are its ends,
+    where a joint meets its limit. `whole` is true where the self-motion is a closed curve that lies within the
+    limits everywhere, and the first and the last are then the same but for full turns.
+    """
+
+    q: Array
+    whole: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """A self-motion: a connected set of configurations that all reach the pose.
+
+    joints: those that move, in numbers from 1; dimension: 1 for a curve, more for a surface; closed: whether the
+    curve was followed until it closed; arcs: its pieces within the limits (all of it where limits do not count);
+    solution: which of the listed solutions, from 0, stands for it, or -1 where none does (none is within the limits,
+    or the list was cut).
+    """
+
+    joints: tuple[int, ...]
+    dimension: int
+    closed: bool
+    arcs: tuple[Arc, ...]
+    solution: int
+
+
+@dataclass(frozen=True, eq=False)
 class Result:
     """The answer for one target.
 
-    `complete` is true only where the solver guarantees that every solution is listed; `reason` says why
-    there is none; `nearest` is then the closest configuration found. `counts` says how many candidates
-    were left after each filter. `families` is true where every solution is listed or differs from a listed
-    one only in joints that are free on their own, whatever the others do.
+    `complete` is true only where every solution is listed, or stands on one of the `families`; `basis` is what
+    that rests on: "counted" (as many complex solutions found as the arm has at any pose), "accounted" (the paths
+    of a homotopy from two independent starts all ended: regular, singular or infinite), None where not all solutions
+    are known. Where they are, and `complete` is false, the list was cut, or only `postures` holds. `certificate` says
+    the basis in a sentence with the numbers, or why there is none. `reason` says why there is no solution; `nearest`
+    is then the closest configuration found. `counts` says how many were left after each filter: "closing" (distinct
+    ones that reach the pose), "within_limits", "listed"; and how many the listed ones make with full turns of joints
+    within the limits: "turns". `postures` is true where every solution is listed or differs from a listed one only in
+    joints that are free on their own, whatever the others do.
     """
 
     solutions: tuple[Solution, ...]
@@ -45,7 +80,11 @@ class Result:
     reason: str | None = None
     nearest: Solution | None = None
     counts: Mapping[str, int] = field(default_factory=dict)
-    families: bool = False
+    postures: bool = False
+    basis: str | None = None
+    certificate: str = ""
+    all_known: bool = False
+    families: tuple[Family, ...] = ()
 
     @property
     def reachable(self) -> bool:

@@ -42,7 +42,8 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 STEP = 0.6
-"""Longest step of a joint [rad | size]: about as far as a quadratic model of a turn means anything."""
+"""Longest step of a joint [rad | size]: about as far as a quadratic model of a turn means anything. What has slid
+further than a size may slide by this part of that."""
 
 CAUTION = 0.1
 """λ at first, as a part of w: not above the curvature of what only w lets move, or it would hardly move."""
@@ -67,6 +68,9 @@ NOISE = 1e-15
 
 STUCK = 1e8
 """λ at which no step is worth anything: rounding is all that is left."""
+
+HOPELESS = 1e20
+"""Greatest λ: starts that are stuck wait for others and must not overflow."""
 
 
 class Slope(NamedTuple):
@@ -119,8 +123,8 @@ def go_down(
 ) -> tuple[Array, Array, Array]:
     """Where x: (n, s) [rad | size] comes to in some steps, and ½|p - t|² [size²] and 1 - cos θ there, each (s,).
 
-    T: (4, 3, s) the targets' columns [m]; limits: (n, 1) twice [rad | size]; weight: w (s,); still: a step
-    [rad | size] that ends the way; least: the least λ.
+    T: (4, 3, s) the targets' columns [m]; limits: (n, 1) or (n, s) twice [rad | size]; weight: w (s,); still: a
+    step [rad | size] that ends the way; least: the least λ.
     """
     low, high = limits
     x = np.minimum(np.maximum(x, low), high)
@@ -131,7 +135,8 @@ def go_down(
     end, rows = (x.copy(), here.place.copy(), here.turn.copy()), np.arange(len(damping))
     for step in range(steps):
         held = ((x <= low) & (here.gradient > 0.0)) | ((x >= high) & (here.gradient < 0.0))
-        wish, damping, definite = _step(here, held, damping, weight)
+        unit = np.where(chain.revolute[:, None], 1.0, np.maximum(np.abs(x), 1.0))
+        wish, damping, definite = _step(here, held, damping, weight, unit)
         ahead = np.minimum(np.maximum(x + wish, low), high)
         dx = ahead - x
         there = slope(chain, T, ahead, size, weight)
@@ -140,7 +145,7 @@ def go_down(
         ratio = (here.f - there.f + noise) / (np.maximum(foretold, 0.0) + noise)
         take = definite & (there.f <= here.f + noise) & (ratio > 1e-4) & ~done
         shrunk = np.maximum(SHRINK, 1.0 - (2.0 * np.clip(ratio, 0.0, 1.0) - 1.0) ** 3)
-        damping = np.maximum(np.where(take, shrunk, growth) * damping, least)
+        damping = np.clip(np.where(take, shrunk, growth) * damping, least, HOPELESS)
         growth = np.where(take, 4.0, 2.0 * growth)
         for new, old in zip((ahead, *there), (x, *here), strict=True):
             np.copyto(old, new, where=take)
@@ -154,13 +159,17 @@ def go_down(
             on = ~done
             rows, T, x, weight, damping, growth = rows[on], T[..., on], x[:, on], weight[on], damping[on], growth[on]
             here, done = Slope(*(part[..., on] for part in here)), done[on]
+            low, high = (bound if bound.shape[1] == 1 else bound[:, on] for bound in (low, high))
     for whole, part in zip(end, (x, here.place, here.turn), strict=True):
         whole[..., rows] = part
     return end
 
 
-def _step(here: Slope, held: Flags, damping: Array, weight: Array) -> tuple[Array, Array, Flags]:
-    """The damped Newton step (n, s) of the joints that are not held, λ (s,), and where the matrix was definite."""
+def _step(here: Slope, held: Flags, damping: Array, weight: Array, unit: Array) -> tuple[Array, Array, Flags]:
+    """The damped Newton step (n, s) of the joints that are not held, λ (s,), and where the matrix was definite.
+
+    unit: (n, s) what joint moves are counted in [rad | size].
+    """
     n = len(held)
     free = np.where(held[:, None] | held, 0.0, here.hessian)
     right = np.where(held, 0.0, -here.gradient)
@@ -173,7 +182,7 @@ def _step(here: Slope, held: Flags, damping: Array, weight: Array) -> tuple[Arra
         more = np.maximum(8.0 * damping, INDEFINITE * (np.sqrt(2.0 * here.place) + weight))
         damping = np.where(definite, damping, more)
     dx = np.where(definite, dx, 0.0)
-    return dx * (STEP / np.maximum(_greatest(dx), STEP)), damping, definite
+    return dx * (STEP / np.maximum(_greatest(dx / unit), STEP)), damping, definite
 
 
 def solve_definite(A: Array, b: Array) -> tuple[Array, Flags]:
@@ -209,6 +218,19 @@ def _frames(chain: Chain, x: Array, size: float) -> tuple[Array, Array, Array, A
             for row, entry in enumerate(entries):
                 column[row] = entry
     return z, o, tool[:3], tool[3]
+
+
+def place_jacobian(chain: Chain, x: Array, size: float) -> Array:
+    """∂p/∂x (n, 3, s) [size] at x: (n, s) [rad | size]."""
+    z, o, _, p = _frames(chain, x, size)
+    jacobian: Array = np.where(chain.revolute[:, None, None], _cross(z, (p - o) / size), z)
+    return jacobian
+
+
+def offsets(chain: Chain, T: Array, x: Array, size: float) -> Array:
+    """p - t (3, s) [size] at x: (n, s) [rad | size], for targets T: (4, 3, s) [m]."""
+    away: Array = (_frames(chain, x, size)[3] - T[3]) / size
+    return away
 
 
 def _cross(u: Array, v: Array) -> Array:

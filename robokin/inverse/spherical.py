@@ -77,7 +77,7 @@ from robokin.inverse.forms import (
     loose,
     parallel_gradient,
 )
-from robokin.inverse.gather import Index, chosen_positions, gathered, in_front, joined
+from robokin.inverse.gather import Index, Marks, chosen_positions, gathered, in_front, joined
 from robokin.inverse.loop import Candidates, Loop
 from robokin.inverse.pair import Pair
 from robokin.inverse.trigonometry import CLAMP, Mask, both, linear_roots, quadratic_roots, turn_between
@@ -96,7 +96,7 @@ class SphericalTriple:
     def __init__(self, loop: Loop, first: int) -> None:
         self.first = first
         self.deviation, _, _ = meeting_point(loop, first)
-        self.method = "spherical wrist" if first >= 2 else "spherical shoulder"
+        self.method = ("spherical shoulder", "spherical elbow", "spherical elbow", "spherical wrist")[first]
         self.sentence = f"axes {ORDINALS[first]} meet in one point"
         self.reversed = first in (0, 2)
         if self.reversed:
@@ -156,30 +156,35 @@ class SphericalTriple:
             index = np.arange(len(closing))
             g = self._point(D)
             equations = self._equations(B, g)
+            marks = Marks(len(closing))
             q_c, real, loose = self._third(equations)
-            found = self._from_third(B, D, g, equations, q_c, real, index)
+            found = self._from_third(B, D, g, equations, q_c, real, index, marks)
             if loose is None:
-                return found
+                return marks.on(found)
+            marks.loose |= loose
             # q_c's equation says nothing: whatever q_c the others can serve.
             index = index[np.broadcast_to(loose, index.shape)]
             fan = self.c.fan
             every = np.ones(np.shape(fan[0]), dtype=bool)
             B, D = taken(B, index), taken(D, index)
             g = self._point(D)
-            return joined(found, self._from_third(B, D, g, self._equations(B, g), fan, every, index))
+            return marks.on(joined(found, self._from_third(B, D, g, self._equations(B, g), fan, every, index, marks)))
 
     def _point(self, D: Frame) -> Vector:
         """g."""
         return moved_back(D, [0.0, 0.0, self.far])
 
     def _from_third(
-        self, B: Frame, D: Frame, g: Vector, equations: Equations, q_c: Motion, real: Mask, index: Index
+        self, B: Frame, D: Frame, g: Vector, equations: Equations, q_c: Motion, real: Mask, index: Index, marks: Marks
     ) -> Candidates:
         """The candidates for given q_c."""
         q_b, y, real = self._second(equations, q_c, real)
         x = moved(self.A, y)
         q_a: Motion = turn_between(x, g) if self.a is Revolute else (minus(g[2], x[2]),)
-        found = self._wrist(B, D, (q_a, q_b, q_c), real, index)
+        for kind_of_joint, lever in ((self.a, g), (self.b, y)):
+            if kind_of_joint is Revolute:
+                marks.short(lever[0], lever[1], index)
+        found = self._wrist(B, D, (q_a, q_b, q_c), real, index, marks)
         if right_angled(self.P, self.Q):
             return found
         # Not every orientation is within reach of this wrist, so a free joint must look for those that are.
@@ -189,16 +194,20 @@ class SphericalTriple:
                 positions, chosen = chosen_positions((q_a, q_b, q_c), free & real)
                 positions[joint] = Revolute.fan
                 every = np.ones((len(FAN), 1), dtype=bool)
-                fanned = self._wrist(taken(B, chosen), taken(D, chosen), positions, every, index[chosen])
+                marks.loose[index[chosen]] = True
+                fanned = self._wrist(taken(B, chosen), taken(D, chosen), positions, every, index[chosen], marks)
                 found = joined(found, fanned)
         return found
 
-    def _wrist(self, B: Frame, D: Frame, positions: Sequence[Motion], real: Mask, index: Index) -> Candidates:
+    def _wrist(
+        self, B: Frame, D: Frame, positions: Sequence[Motion], real: Mask, index: Index, marks: Marks
+    ) -> Candidates:
         """The candidates for given positions of a, b and c."""
         others = (self.a, self.b, self.c)
         R = transposed(D.R)
         for joint, position, link in zip(others, positions, (self.A, B, self.C), strict=True):
             R = transposed([applied_back(link.R, joint.back_direction(position, part)) for part in transposed(R)])
+        marks.short(R[0][2], R[1][2], index)
         *turns, reached = three_turns(self.P, self.Q, R)
         values = [joint.value(position) for joint, position in zip(others, positions, strict=True)]
         values += [in_front(q, real) for q in turns]

@@ -28,13 +28,13 @@ PREFERRED = 1e3
 
 
 def well_spread(
-    index: Index, x: Array, revolute: NDArray[np.bool_], move: Array, inside: NDArray[np.bool_], most: int
+    index: Index, x: Array, revolute: NDArray[np.bool_], move: Array, rank: NDArray[np.bool_] | Index, most: int
 ) -> Index:
     """Which configurations to list for each target, at most `most`, in the order of their choice.
 
     index: (s,) the targets, sorted; x: (s, n) configurations, angles in [-π, π], lengths in sizes; move: (s,),
-    the least of a target is chosen first; inside: (s,) whether it is within the limits, all of which are chosen
-    before any other.
+    the least of a target is chosen first; rank: (s,) all of a higher rank are chosen before any of a lower one, as
+    those within the limits (1 or true) before the others (0 or false).
     """
     starts = np.flatnonzero(np.diff(index, prepend=-1))
     counts = np.diff(np.append(starts, len(index)))
@@ -47,7 +47,7 @@ def well_spread(
         place = np.arange(count.max())
         filled = place < count[:, None]
         rows = begin[:, None] + np.minimum(place, count[:, None] - 1)
-        picked = _chosen(x.T[:, rows], revolute, filled, move[rows], inside[rows], min(most, len(place)))
+        picked = _chosen(x.T[:, rows], revolute, filled, move[rows], rank[rows], min(most, len(place)))
         chosen.append((begin[:, None] + picked)[picked >= 0])
     return np.concatenate(chosen)
 
@@ -57,11 +57,11 @@ def _chosen(
     revolute: NDArray[np.bool_],
     filled: NDArray[np.bool_],
     move: Array,
-    inside: NDArray[np.bool_],
+    rank: NDArray[np.bool_] | Index,
     most: int,
 ) -> Index:
     """(g, most) places of the chosen of x: (n, g, K) in the order of their choice; -1 where there are no more."""
-    preferred = np.where(inside, PREFERRED, 0.0)
+    preferred = PREFERRED * rank
     distance = np.where(filled, np.inf, -np.inf)
     out = np.empty((len(filled), most), dtype=np.intp)
     target = np.arange(len(filled))

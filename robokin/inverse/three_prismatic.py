@@ -39,8 +39,9 @@ from robokin.inverse.entries import (
     transposed,
 )
 from robokin.inverse.forms import Motion, Prismatic, Revolute, kind
-from robokin.inverse.gather import gathered
+from robokin.inverse.gather import LEVER, Marks, gathered
 from robokin.inverse.loop import Candidates, Loop
+from robokin.inverse.trigonometry import Mask
 from robokin.inverse.turns import three_turns
 
 PLANAR = 1e-10
@@ -102,10 +103,14 @@ class ThreePrismatic:
                 int(i): (np.cos(q), np.sin(q)) for i, q in zip(self.turning, angles, strict=True)
             }
             p, directions = self._translation(turns, end)
-            lengths = solved(directions, p)
+            lengths, planar = solved(directions, p)
             values: dict[int, Entry] = {int(i): q for i, q in zip(self.turning, angles, strict=True)}
             values |= {int(i): d for i, d in zip(self.sliding, lengths, strict=True)}
-            return gathered(np.arange(len(closing)), values, real)
+            found = gathered(np.arange(len(closing)), values, real)
+            marks = Marks(len(closing))
+            marks.short(W[0][2], W[1][2], np.arange(len(closing)))
+            marks.near |= np.broadcast_to(planar, (2, len(closing))).any(axis=0)
+            return marks.on(found)
 
     def _translation(self, turns: dict[int, Motion], end: Frame) -> tuple[Vector, list[Vector]]:
         """The translation of the loop at lengths 0, and the directions of the sliding axes in order."""
@@ -123,8 +128,11 @@ class ThreePrismatic:
         return p, directions
 
 
-def solved(directions: list[Vector], p: Vector) -> list[Array]:
-    """The lengths d with Σ d_n z_n + p = 0, by Cramer's rule; the shortest ones where the z_n lie in a plane."""
+def solved(directions: list[Vector], p: Vector) -> tuple[list[Array], Mask]:
+    """The lengths d with Σ d_n z_n + p = 0, by Cramer's rule; the shortest ones where the z_n lie in a plane.
+
+    Also where they nearly do.
+    """
     a, b, c = directions
     normals = [crossed(b, c), crossed(c, a), crossed(a, b)]
     volume = np.asarray(dot(a, normals[0]))
@@ -140,7 +148,7 @@ def solved(directions: list[Vector], p: Vector) -> list[Array]:
         shortest = -np.linalg.pinv(np.swapaxes(M[:, :3], 1, 2), rcond=PLANAR) @ M[:, 3, :, None]
         for length, part in zip(lengths, shortest[..., 0].T, strict=True):
             length[chosen] = part
-    return lengths
+    return lengths, np.abs(volume) < LEVER
 
 
 def crossed(u: Vector, v: Vector) -> Vector:

@@ -73,6 +73,7 @@ def two_turns(P: Matrix, s: Vector, w: Vector) -> tuple[Turn, Turn, Mask]:
 def three_turns(P: Matrix, Q: Matrix, R: Matrix) -> tuple[Array, Array, Array, Mask]:
     """q1, q2, q3, each (2, …) [rad], with R = Rz(q1) P Rz(q2) Q Rz(q3), and whether they are real: (1, …)."""
     s = [row[2] for row in Q]
+    R = _alike(R)
     w = [row[2] for row in R]
     axis = [row[2] for row in P]
     if right_angled(P, Q):
@@ -80,6 +81,20 @@ def three_turns(P: Matrix, Q: Matrix, R: Matrix) -> tuple[Array, Array, Array, M
     alpha, beta, real = two_turns(P, s, w)
     q3 = _third(Q, R, turned(alpha, axis))
     return np.asarray(angle(*alpha)), np.asarray(angle(*beta)), np.asarray(q3), real
+
+
+def _alike(R: Matrix) -> Matrix:
+    """R with as many axes of branches in all of its columns: what some of them do not depend on, others may."""
+    most = max(np.ndim(entry) for row in R for entry in row)
+    if all(isinstance(entry, float) or entry.ndim == most for row in R for entry in row):
+        return R
+    return [
+        [
+            entry if isinstance(entry, float) else entry.reshape((1,) * (most - entry.ndim) + entry.shape)
+            for entry in row
+        ]
+        for row in R
+    ]
 
 
 def right_angled(P: Matrix, Q: Matrix) -> bool:

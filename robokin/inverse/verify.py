@@ -15,13 +15,17 @@ from robokin.inverse.loop import Candidates, Loop
 from robokin.inverse.newton import refine
 from robokin.kinematics.chain import Chain
 from robokin.kinematics.columns import BLOCK, Constant, Plan
-from robokin.model.robot import LIMIT_TOLERANCE
+from robokin.model.robot import tolerated
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 CLOSES = 1e-9
 """A solution's greatest residual, in the arm's size and in radians: what is listed closes to this."""
+
+ROUNDING = 1e-14
+"""A residual of this part of what the joints slide may be rounding, on top of CLOSES: some 50 times the last digit.
+Of a slide that is a million times as long as the links the last digit is a part in 1e10 of the links."""
 
 EXACT_ENOUGH = 1e-12
 """Residual above which a candidate gets Newton steps before it is judged; closed forms give 1e-15."""
@@ -32,6 +36,13 @@ NEWTON_STEPS = 12
 SAME = 1e-6
 """Configurations that differ by less in every joint [rad | size] are one. Rounding moves a solution by 1e-9 at
 a singular pose at most once it closes; different solutions are rarely nearer than 1e-4 to each other."""
+
+HALF_TURN = 1e-9
+"""Angles [rad] this near to -π count as π: solutions closer than that to the same root differ by rounding."""
+
+CLOSE = 1e-4
+"""A difference of the weighted sums of two configurations' joints, in half turns and sizes, below which the two may be
+about to meet. By chance one pose in five hundred has one."""
 
 VIRTUAL = 1e-8
 """A virtual joint at less than this [rad | size] stands still: the arm reaches the pose without it."""
@@ -66,6 +77,16 @@ class Found:
 def nothing(n: int) -> Found:
     """No configuration."""
     return Found(np.empty(0, dtype=np.intp), np.empty((0, n)), np.empty(0), np.empty(0))
+
+
+def merged(a: Found, b: Found) -> Found:
+    """Both, one after the other."""
+    return Found(
+        np.concatenate([a.index, b.index]),
+        np.concatenate([a.q, b.q]),
+        np.concatenate([a.position, b.position]),
+        np.concatenate([a.angle, b.angle]),
+    )
 
 
 class Poses:
@@ -110,23 +131,34 @@ def residuals(T: Array, found: Array) -> tuple[Array, Array]:
     return position, 2.0 * np.arcsin(np.minimum(chord / np.sqrt(8.0), 1.0))
 
 
-def verified(loop: Loop, chain: Chain, poses: Poses, closing: Array, candidates: Candidates) -> Found:
+def verified(
+    loop: Loop, chain: Chain, poses: Poses, closing: Array, candidates: Candidates, enough: float = EXACT_ENOUGH
+) -> Found:
     """The candidates that close, after a polish of those that close only nearly.
 
-    poses: of the chain, against the targets; closing: (m, 4, 4) the targets as the loop's last link.
+    poses: of the chain, against the targets; closing: (m, 4, 4) the targets as the loop's last link; enough: the
+    residual [size and rad] above which a candidate is polished.
     """
     index, values = candidates.index, candidates.values
     scale = np.where(chain.revolute, 1.0, loop.size)[:, None]
     q = values.T * scale
     q -= chain.offsets[:, None]
     position, angle = poses.residuals(index, q)
-    rough = np.flatnonzero(~(np.maximum(position / loop.size, angle) <= EXACT_ENOUGH))
+    rough = np.flatnonzero(~(np.maximum(position / loop.size, angle) <= enough))
     if len(rough):
         polished, _, _ = refine(loop, closing, index[rough], values[rough], NEWTON_STEPS)
         q[:, rough] = polished.T * scale - chain.offsets[:, None]
         position[rough], angle[rough] = poses.residuals(index[rough], q[:, rough])
-    closes = (position <= CLOSES * loop.size) & (angle <= CLOSES)
+    closes = (position <= closing_distances(chain, q.T, loop.size)) & (angle <= CLOSES)
     return Found(index, q.T, position, angle).pick(closes)
+
+
+def closing_distances(chain: Chain, q: Array, size: float) -> Array:
+    """(s,) up to which distance from the target [m] configurations (s, n) [rad | m] close; of turning joints (1,)."""
+    if chain.revolute.all():
+        return np.array([CLOSES * size])
+    slid = np.abs(q + chain.offsets)[:, ~chain.revolute]
+    return np.asarray(CLOSES * size + ROUNDING * np.sum(slid, axis=1))
 
 
 def wrapped(q: Array, revolute: NDArray[np.bool_]) -> Array:
@@ -143,9 +175,20 @@ def distinct(found: Found, revolute: NDArray[np.bool_], size: float) -> Found:
     Of equal ones that with the least residual stays. The order is by q1 to q4 as rounded to a few
     hundredths of a degree (one number holds the four), so that no last digit decides.
     """
+    return distinct_and_close(found, revolute, size)[0]
+
+
+def distinct_and_close(found: Found, revolute: NDArray[np.bool_], size: float) -> tuple[Found, Index, Index]:
+    """`distinct`; the targets (k,) of which some were equal; those of which some may be nearer than CLOSE together.
+
+    Where solutions meet the arm is singular, so that nearness is a cheap hint of it.
+    """
+    none = np.empty(0, dtype=np.intp)
     if not len(found):
-        return found
+        return found, none, none
     q = wrapped(found.q, revolute)
+    # -180° is 180°, whatever the last digits say: the order must not depend on them.
+    q[revolute & (q < HALF_TURN - np.pi)] += 2.0 * np.pi
     scaled = q.T / np.where(revolute, np.pi, size)[:, None]
     by_target = np.argsort(found.index.astype(np.uint16), kind="stable")  # of 16 bits: counted, not compared
     counts = np.bincount(found.index)
@@ -167,12 +210,14 @@ def distinct(found: Found, revolute: NDArray[np.bool_], size: float) -> Found:
     sums = table(weights @ np.abs(scaled))
     sums.sort(axis=1)
     with np.errstate(invalid="ignore"):
-        alike = np.any(np.diff(sums, axis=1) < SAME * weights.sum(), axis=1)
+        gaps = np.fmin.reduce(np.diff(sums, axis=1), axis=1, initial=np.inf)
+    alike = gaps < SAME * weights.sum()
+    close = found.index[by_target[np.cumsum(counts) - counts]][gaps < CLOSE]
     key = np.zeros(len(by_target))
     for cells, value, turns in zip(KEY_CELLS, scaled, revolute, strict=False):
         half = 0.5 * (cells - 1)
         part = (value if turns else np.clip(value, -1.0, 1.0)) * half
-        part += half
+        part += half + OFF_CENTRE
         key *= cells
         key += np.round(part, out=part)
     first = np.cumsum(counts) - counts
@@ -180,12 +225,15 @@ def distinct(found: Found, revolute: NDArray[np.bool_], size: float) -> Found:
     order = by_target[places.reshape(-1) if full else places[filled]]
     arranged = Found(found.index, q, found.position, found.angle).pick(order)
     if not alike.any():
-        return arranged
-    close = np.repeat(alike, counts)
+        return arranged, none, close
+    compared = np.repeat(alike, counts)
     keep = np.ones(len(order), dtype=bool)
-    keep[close] = _first_of_equals(arranged.pick(close), revolute, size)
-    return arranged.pick(keep)
+    keep[compared] = _first_of_equals(arranged.pick(compared), revolute, size)
+    return arranged.pick(keep), np.unique(arranged.index[~keep]), close
 
+
+OFF_CENTRE = 0.31
+"""Moves round angles off the edges of the cells: zero, multiples of 15° and what rounding makes of them."""
 
 KEY_CELLS = (2.0**14, 2.0**13, 2.0**13, 2.0**13)
 """Parts that the ranges of q1 … q4 are cut into for the order; their product is a whole number below 2⁵³."""
@@ -225,7 +273,7 @@ def within_limits(
     if near is not None:
         q = np.where(revolute, q + turn * np.round((near - q) / turn), q)
     given = q
-    low, high = limits[:, 0] - LIMIT_TOLERANCE, limits[:, 1] + LIMIT_TOLERANCE
+    low, high = tolerated(limits)
     inside = np.ones(len(q), dtype=bool)
     columns = q.T
     for i in np.flatnonzero(np.isfinite(limits).any(axis=1)):

@@ -3,17 +3,22 @@
 Every convention becomes T = C0 J1(q1) C1 J2(q2) … Jn(qn) Cn, where J is Rot(z, q + offset) or
 Trans(0, 0, q + offset) and each C is a constant rigid transform. What follows (forward kinematics,
 Jacobian, inverse kinematics) is written for this form alone.
+
+Each joint's frame may stand anywhere on its axis: moved along z it gives the same T. It stands where the table puts
+it, unless that is far off the arm: calibrated tables of axes that are parallel but for 1e-4 rad put frames hundreds of
+metres away, and lengths of 0.1 m would be differences of such numbers.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.kinematics.arm_size import axis_path
 from robokin.kinematics.dh import modified_dh, standard_dh
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import invert, rotation_transform
@@ -24,17 +29,23 @@ EXACT = 1e-15
 """An entry of a constant rotation this near to 0 or ±1 is meant to be just that: it is rounding of the
 products of right angles (a few 1e-16). Exact entries cost no arithmetic later."""
 
+FAR = 2.0
+"""Frames that are farther from each other, in the arm's size and added up, than this are moved along their axes to the
+arm. In tables that are written by hand it is less than 1.5: only offsets along parallel axes may go to and fro."""
+
 
 @dataclass(frozen=True, eq=False)
 class Chain:
     """C0 J1 C1 … Jn Cn.
 
-    constants: (n + 1, 4, 4) [m]; revolute: (n,) bool; offsets: (n,) [rad | m].
+    constants: (n + 1, 4, 4) [m]; revolute: (n,) bool; offsets: (n,) [rad | m]; start: (3,) where the arm begins, the
+    origin of its base, in the frame that the first joint starts from [m].
     """
 
     constants: Array
     revolute: NDArray[np.bool_]
     offsets: Array
+    start: Array = field(default_factory=lambda: np.zeros(3))
 
     @property
     def n(self) -> int:
@@ -59,8 +70,35 @@ def chain_of(robot: Robot) -> Chain:
                 constants[-1] = constants[-1] @ after
         constants[-1] = constants[-1] @ robot.tool
         offsets = np.array([joint.offset for joint in robot.joints])
-        chain = _chains[robot] = Chain(np.stack([exact(C) for C in constants]), robot.revolute, offsets)
+        start = (invert(constants[0]) @ robot.base)[:3, 3]
+        chain = Chain(np.stack([exact(C) for C in constants]), robot.revolute, offsets, start)
+        chain = _chains[robot] = near_the_arm(chain)
     return chain
+
+
+def chain_size(chain: Chain) -> float:
+    """The arm's size [m]: the lengths along and between its axes (see `arm_size`), or 1 where there are none."""
+    return axis_path(chain.constants, chain.revolute, chain.offsets, chain.start)[0]
+
+
+def near_the_arm(chain: Chain) -> Chain:
+    """The chain with its joints' frames moved along their axes to the arm, if they stand far off."""
+    size, shifts = axis_path(chain.constants, chain.revolute, chain.offsets, chain.start)
+    if float(np.sum(np.linalg.norm(chain.constants[1:, :3, 3], axis=1))) <= FAR * size:
+        return chain
+    constants = chain.constants.copy()
+    start = chain.start.copy()
+    for i in range(chain.n):
+        # A joint along or about z lets a shift along z pass; a slide lets every translation pass, and starts where the
+        # joint before it does.
+        shift = np.array([0.0, 0.0, shifts[i]])
+        if not chain.revolute[i] and i > 0:
+            shift = -constants[i, :3, :3].T @ constants[i, :3, 3]
+        constants[i, :3, 3] += constants[i, :3, :3] @ shift
+        constants[i + 1, :3, 3] -= shift
+        if i == 0:
+            start -= shift
+    return Chain(constants, chain.revolute, chain.offsets, start)
 
 
 def row_constants(row: Joint, convention: str) -> tuple[Array, Array]:

@@ -7,10 +7,12 @@ there but for chance (axes parallel, meeting in a point, the Jacobian's rank) ho
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.kinematics.chain import chain_of, chain_size
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
 from robokin.model import Robot
@@ -51,8 +53,7 @@ class _Axes:
         self.q = np.random.default_rng(20).uniform(-1.0, 1.0, robot.n)
         frames = joint_frames(robot, self.q)
         self.z, self.o = frames[:-1, :3, 2], frames[:-1, :3, 3]
-        spread = frames[:, :3, 3] - frames[0, :3, 3]
-        self.size = float(np.max(np.linalg.norm(spread, axis=1), initial=0.0)) or 1.0
+        self.size = chain_size(chain_of(robot))
 
     def parallel(self, *joints: int) -> bool:
         """Whether the axes have one direction."""
@@ -64,7 +65,10 @@ class _Axes:
         return bool(abs(self.z[i] @ self.z[j]) < SAME)
 
     def concurrent(self, *joints: int) -> bool:
-        """Whether the axes meet in one point: the least squares point lies on all of them."""
+        """Whether the axes meet in one point: the least squares point lies on all of them, and no two neighbours are
+        one axis."""
+        if any(self.parallel(*pair) for pair in pairwise(joints)):
+            return False
         z, o = self.z[list(joints)], self.o[list(joints)]
         off = np.eye(3) - z[:, :, None] * z[:, None, :]
         point, _, rank, _ = np.linalg.lstsq(off.reshape(-1, 3), np.einsum("kij,kj->ki", off, o).ravel(), rcond=1e-9)

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robokin.errors import InputError
-from robokin.kinematics.chain import chain_of
+from robokin.kinematics.chain import chain_of, chain_size
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
 from robokin.kinematics.structure import structure_of
@@ -87,12 +87,6 @@ class Lost:
     words: str
 
 
-def characteristic_length(robot: Robot) -> float:
-    """The size of an arm [m]: the distances from joint to joint and on to the tool added up, or 1 where all are 0."""
-    lengths = np.linalg.norm(chain_of(robot).constants[1:, :3, 3], axis=1)
-    return float(np.sum(lengths)) or 1.0
-
-
 _tasks: WeakKeyDictionary[Robot, dict[str | None, MotionTask]] = WeakKeyDictionary()
 
 
@@ -114,7 +108,7 @@ def motion_task(robot: Robot, name: TaskName | None = None) -> MotionTask:
 
 
 def _task(robot: Robot, name: TaskName | None) -> MotionTask:
-    size = characteristic_length(robot)
+    size = chain_size(chain_of(robot))
     # Arbitrary configurations: what holds at them but for chance holds nearly everywhere.
     q = np.random.default_rng(7).uniform(-1.0, 1.0, (8, robot.n)) * np.where(robot.revolute, 1.0, size)
     J = scaled(robot, jacobian(robot, q), size)

@@ -12,8 +12,7 @@ import math
 
 import numpy as np
 
-from robokin.inverse.loop import chain_size
-from robokin.kinematics.chain import Chain
+from robokin.kinematics.chain import Chain, chain_size
 from robokin.lessons.links import ROUNDING, SAME, Array, Link, link_of, reach_of
 from robokin.lessons.sheet import Arm, Sheet, Stage, angles, lengths
 from robokin.lessons.shoulder import Shoulder

@@ -14,10 +14,9 @@ from numpy.typing import ArrayLike
 
 from robokin.errors import InputError
 from robokin.inverse.analysis import Task
-from robokin.inverse.loop import chain_size
 from robokin.inverse.solve import target_poses
 from robokin.inverse.verify import CLOSES, residuals, within_limits, wrapped
-from robokin.kinematics.chain import chain_of
+from robokin.kinematics.chain import chain_of, chain_size
 from robokin.kinematics.forward import forward_kinematics
 from robokin.lessons.links import Array
 from robokin.lessons.plans import Plan, first_steps, plan_of

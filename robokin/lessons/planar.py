@@ -10,8 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from robokin.inverse.loop import chain_size
-from robokin.kinematics.chain import Chain
+from robokin.kinematics.chain import Chain, chain_size
 from robokin.lessons.links import SAME, Array, Z, end_of, link_of, reach_of
 from robokin.lessons.sheet import Arm, Quantity, Sheet, Stage, angles, index, lengths
 from robokin.lessons.two_links import TwoLinks

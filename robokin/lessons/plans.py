@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from robokin.inverse.loop import chain_size
-from robokin.kinematics.chain import Chain, chain_of
+from robokin.kinematics.chain import Chain, chain_of, chain_size
 from robokin.lessons.anthropomorphic import anthropomorphic_arm
 from robokin.lessons.links import SAME, Array, Link, end_of, link_of, row_transform
 from robokin.lessons.planar import planar_arm, wrist_point

@@ -14,8 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from robokin.inverse.loop import chain_size
-from robokin.kinematics.chain import Chain
+from robokin.kinematics.chain import Chain, chain_size
 from robokin.lessons.links import ROUNDING, SAME, Array, Z, link_of, right
 from robokin.lessons.sheet import Arm, Quantity, Sheet, Stage, angles, both_roots, index, lengths
 from robokin.lessons.shoulder import Shoulder

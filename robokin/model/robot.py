@@ -22,6 +22,13 @@ LIMIT_TOLERANCE = 1e-9
 """A joint value this far [rad | m] outside its limits is still within: limits are inclusive, and a
 value that went through a change of units or a solver lands within rounding of them."""
 
+NO_LIMIT = 1e100
+"""A limit beyond this [rad | m] is none: volumes made of such ways are no numbers."""
+
+LIMIT_ROUNDING = 1e-12
+"""The same as a part of the limit: what rounding does to a value after a solver, where a slide is longer than a
+kilometre."""
+
 
 class JointType(StrEnum):
     """What a row of the table does: turn about z, slide along z, or neither."""
@@ -60,7 +67,13 @@ class Joint:
     texts: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
-        """Make the arrays read-only."""
+        """Make the arrays read-only, limits beyond `NO_LIMIT` none; refuse those between which there is no number."""
+        low, high = self.limits
+        if not (low <= high and low < np.inf and high > -np.inf):
+            raise InputError(f"joint {self.name} has the limits {low:g} to {high:g}, expected min ≤ max")
+        if max(-low, high) > NO_LIMIT:
+            limits = (low if low > -NO_LIMIT else -np.inf, high if high < NO_LIMIT else np.inf)
+            object.__setattr__(self, "limits", limits)
         for name in ("origin", "axis"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, _read_only(getattr(self, name)))
@@ -138,9 +151,8 @@ class Robot:
     def within_limits(self, q: ArrayLike) -> NDArray[np.bool_]:
         """(...) whether each q: (..., n) [rad | m] respects every limit; limits are inclusive."""
         q = np.asarray(q, dtype=np.float64)
-        low, high = self.limits[:, 0], self.limits[:, 1]
-        inside = (q >= low - LIMIT_TOLERANCE) & (q <= high + LIMIT_TOLERANCE)
-        return np.asarray(np.all(inside, axis=-1))
+        low, high = tolerated(self.limits)
+        return np.asarray(np.all((q >= low) & (q <= high), axis=-1))
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         """Copied and pickled by its fields: the read-only view of a mapping cannot be pickled."""
@@ -150,6 +162,13 @@ class Robot:
     def __repr__(self) -> str:
         """A line that names the robot."""
         return f"<Robot {self.id or self.name!r}: {self.types or 'no joints'}, {self.convention} convention>"
+
+
+def tolerated(limits: Array) -> tuple[Array, Array]:
+    """The least and the greatest values (n,) [rad | m] that count as within limits (n, 2)."""
+    size = np.where(np.isfinite(limits), np.abs(limits), 0.0)
+    margin = np.maximum(LIMIT_TOLERANCE, LIMIT_ROUNDING * size)
+    return limits[:, 0] - margin[:, 0], limits[:, 1] + margin[:, 1]
 
 
 def _read_only(values: ArrayLike) -> Array:

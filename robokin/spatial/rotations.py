@@ -18,6 +18,10 @@ It stands well above the rounding of a product of ten matrices (about 1e-15) and
 angle to zero there moves the matrix by no more than this.
 """
 
+DIGITS_LOST = 1e-3
+"""A matrix or quaternion this near to a rotation is one whose digits were cut in print (four digits leave
+1e-4); the nearest rotation is taken. Beyond, it is something else and is refused."""
+
 ZERO_AXIS = 1e-12
 """An axis or a quaternion shorter than this has no direction."""
 

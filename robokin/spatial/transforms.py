@@ -9,6 +9,9 @@ from robokin.spatial.rotations import rotation_from_axis_angle
 
 Array = NDArray[np.float64]
 
+FARTHEST = 1e12
+"""Metres: no arm reaches that far, and the squares of what is much farther are no numbers."""
+
 
 def transform(R: ArrayLike, p: ArrayLike) -> Array:
     """The pose with rotation R: (..., 3, 3) and origin p: (..., 3) [m]. Returns (..., 4, 4)."""

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.analysis import Analysis, analyse
-from robokin.inverse.blocks import BLOCK, solve_block
+from robokin.inverse.blocks import BLOCK, quick_block
 from robokin.inverse.verify import within_limits
 from robokin.kinematics.chain import Chain, exact, z_to
 from robokin.workspace.placing import Placing
@@ -62,7 +62,7 @@ class ClosedForm:
             T = np.zeros((len(part), 4, 4))
             T[:, range(4), range(4)] = 1.0
             T[:, :3, 3] = part
-            found = solve_block(self.analysis, T, self.all_limits, None, rest)
+            found = quick_block(self.analysis, T, self.all_limits, rest)
             q, inside = within_limits(found.q[:, : self.own], self.chain.revolute, self.limits, None)
             inside &= np.all(np.abs(found.q[:, self.own :]) <= STANDS * self.size, axis=1)
             indices.append(found.index[inside] + start)

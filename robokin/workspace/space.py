@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.errors import InputError
-from robokin.inverse.loop import chain_size
 from robokin.inverse.padding import joint_frames_of
-from robokin.kinematics.chain import Chain, chain_of
+from robokin.kinematics.chain import Chain, chain_of, chain_size
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_transform, translation_transform
 

@@ -113,8 +113,10 @@ class Starts:
         return np.stack([x, y]), z
 
     def _cell(self, seen: Array) -> Index:
-        i, j = ((seen - self.corner[:, None]) / self.step).astype(np.intp)
-        cells: Index = np.clip(i, 0, self.shape[0] - 1) * self.shape[1] + np.clip(j, 0, self.shape[1] - 1)
+        # Kept to the table before they become whole numbers: a point may be farther off than these go.
+        last = self.shape[:, None] - 1.0
+        i, j = np.clip((seen - self.corner[:, None]) / self.step, 0.0, last).astype(np.intp)
+        cells: Index = i * self.shape[1] + j
         return cells
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.analysis import Task, analysis_of
-from robokin.inverse.blocks import BLOCK, solve_block
+from robokin.inverse.blocks import BLOCK, quick_block
 from robokin.inverse.verify import within_limits
 from robokin.spatial import transform
 from robokin.workspace.attitudes import Attitudes
@@ -33,7 +33,7 @@ def reached_with(space: Space, task: Task, points: Array, rotations: Array) -> F
     for start in range(0, len(points), BLOCK):
         part = slice(start, start + BLOCK)
         T = transform(rotations[part], points[part])
-        found = solve_block(analysis, T, robot.limits, None, rest)
+        found = quick_block(analysis, T, robot.limits, rest)
         _, inside = within_limits(found.q, robot.revolute, robot.limits, None)
         answers[start + found.index[inside]] = True
     return answers

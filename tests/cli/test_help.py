@@ -34,7 +34,7 @@ def test_the_version(call):
 def test_the_help_of_a_command(call, command):
     answer = call(command, "--help")
     assert (answer.status, answer.err) == (0, "")
-    assert answer.lines[0].startswith(f"Usage: robokin {command} ")
+    assert answer.lines[0].split()[1:3] == ["robokin", command]
     assert max(map(len, answer.lines)) <= 80
     assert "Examples:" in answer.lines
     assert "\n\n\n" not in answer.text

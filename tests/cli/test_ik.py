@@ -13,12 +13,17 @@ import numpy as np
 import pytest
 
 import robokin
+from robokin.errors import InputError
+from robokin.spatial.rotations import DIGITS_LOST
 
 from .conftest import PROGRAM, environment, poses_of, refused
 
 REACHED = "Trans(500,100,300) RPY(180,0,45)"
 ARGUMENTS = ["--xyz", "500,100,300", "--rpy", "180,0,45"]
-KEYS = ["robot", "units", "target", "reachable", "complete", "method", "reason", "solutions", "nearest"]
+KEYS = [
+    "robot", "units", "target", "reachable", "complete", "basis", "certificate", "counts", "families", "method",
+    "reason", "solutions", "nearest",
+]  # fmt: skip
 SOLUTION = ["q", "branch", "within_limits", "position_error", "angle_error"]
 COLUMNS = (
     ["target", "solution"]
@@ -199,7 +204,11 @@ def test_at_most_so_many(call):
     whole = call("ik", "puma560", *ARGUMENTS, "--json").json
     one = call("ik", "puma560", *ARGUMENTS, "--max", "1", "--json").json
     assert one["solutions"] == whole["solutions"][:1]
-    assert one["complete"] is False
+    # Not all are listed, though all are known.
+    assert (one["complete"], one["basis"], one["certificate"]) == (False, None, whole["certificate"])
+    count = len(whole["solutions"])
+    assert one["counts"] | {"listed": count} == whole["counts"] | {"turns": one["counts"]["turns"]}
+    assert call("ik", "puma560", *ARGUMENTS, "--max", "1").lines[1].startswith(f"1 solution of all {count}: ")
     many = call("ik", "puma560", *ARGUMENTS, "--max", "99", "--json").json
     assert many == whole
 
@@ -221,8 +230,16 @@ def test_a_posture_with_a_self_motion_is_told(call):
     document = call("ik", "puma560", *arguments, "--json").json
     singular = [s for s in document["solutions"] if "self_motion" in s]
     assert [s["self_motion"] for s in singular] == [[4, 6]]
-    assert document["complete"] is False  # one of infinitely many stands for all
-    assert "singular: q4, q6" in call("ik", "puma560", *arguments).text
+    # One of infinitely many stands for all, and the list of its intervals is what makes the answer complete.
+    assert document["complete"] is True
+    (family,) = document["families"]
+    assert (family["joints"], family["closed"]) == ([4, 6], True)
+    assert document["solutions"][family["solution"] - 1] == singular[0]
+    for interval in family["intervals"]:
+        for q in (interval["from"], interval["to"]):
+            assert np.allclose(poses_of("puma560", q), document["target"]["matrix"], rtol=0, atol=1e-5)
+    text = " ".join(call("ik", "puma560", *arguments).lines)
+    assert "self-motion: joints q4 and q6 can move while the pose stays" in text
 
 
 def test_a_free_joint_is_told(call):
@@ -235,10 +252,9 @@ def test_a_free_joint_is_told(call):
         assert solution["q"][4] == pytest.approx(30)
     answer = call("ik", *arguments)
     assert max(map(len, answer.lines)) <= 80
-    assert answer.lines[1] == "4 solutions, all there are but for the value of q5 (closed form)"
+    assert answer.lines[1].startswith("4 solutions, all there are but for the value of q5")
     assert answer.lines[-1] == "free: q5 may have any value; each posture is listed once"
-    # Cut, there may be more.
-    assert "2 solutions, there may be more" in call("ik", *arguments, "--max", "2").text
+    assert call("ik", *arguments, "--max", "2").lines[1].startswith("2 solutions of all 4 but for the value of q5")
 
 
 def test_a_redundant_arm_is_told(call):
@@ -250,11 +266,10 @@ def test_a_redundant_arm_is_told(call):
     assert all(solution["self_motion"] == [1, 2, 3, 4, 5, 6, 7] for solution in every)
     answer = call("ik", *arguments, "--max", "3")
     assert max(map(len, answer.lines)) <= 80
-    assert "q1 to q7 may move together" in answer.text
-    assert "singular" not in answer.text
+    assert "self-motion: joints q1 to q7 can move while the pose stays" in answer.text
     text = call("ik", "puma560", "--xyz", "400,200,300").text
     assert "free: q6 may have any value" in text
-    assert "q1 to q5 may move together" in text
+    assert "self-motion: joints q1 to q5 can move while the position stays" in text
 
 
 def test_a_tolerance_takes_the_nearest_pose(call):
@@ -309,8 +324,9 @@ def test_of_a_position_no_angle_is_off(call):
 def test_the_table(call):
     answer = call("ik", "puma560", *ARGUMENTS)
     assert answer.lines[0] == "PUMA 560  lengths in mm, angles in deg"
-    assert answer.lines[1].endswith("solutions, all there are (spherical wrist)")
-    assert answer.lines[3].split() == ["#", *(f"q{i}" for i in range(1, 7)), "shoulder", "elbow", "wrist"]
+    verdict, _, rest = answer.text.partition("\n\n")
+    assert re.search(r"\d solutions, all there are.* \(spherical wrist\)$", " ".join(verdict.splitlines()))
+    assert rest.splitlines()[0].split() == ["#", *(f"q{i}" for i in range(1, 7)), "shoulder", "elbow", "wrist"]
     assert max(map(len, answer.lines)) <= 80
 
 
@@ -670,3 +686,22 @@ def test_a_failed_batch_leaves_no_file(call, tmp_path):
     path = tmp_path / "q.csv"
     assert call("ik", "puma560", "-i", "-", "-o", path, stdin=(ROW + "x\n").encode()).status == 2
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("part", [0.5, 0.99, 1.01, 2.0])
+def test_python_and_the_shell_take_the_same_matrices(call, part):
+    T = np.eye(4)
+    T[0, 1] = part * DIGITS_LOST
+    T[:3, 3] = 400.0, 200.0, 100.0
+    answer = call("ik", "puma560", "--no-limits", "--json", "--matrix", json.dumps(T.tolist()))
+    robot = robokin.load("puma560")
+    T[:3, 3] /= 1000.0
+    if part > 1.0:
+        assert answer.status == 2
+        with pytest.raises(InputError, match=r"expected at most 0\.001"):
+            robokin.solve_ik(robot, T)
+        return
+    shell = np.array([solution["q"] for solution in json.loads(answer.out)["solutions"]])
+    python = np.array([solution.q for solution in robokin.solve_ik(robot, T, limits=False).solutions])
+    assert len(shell) > 0
+    assert np.allclose(np.deg2rad(shell), python, atol=1e-9)

@@ -8,10 +8,12 @@ import pytest
 import robokin
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.closest import beyond_reach, nearest_configurations
+from robokin.inverse.closing import closing_nearest
 from robokin.inverse.numeric import error_and_jacobian
 from robokin.inverse.second_order import go_down, slope, solve_definite
 from robokin.inverse.solve import solve_many
-from robokin.spatial import nearest_rotation, rotation_angle, transform
+from robokin.inverse.verify import residuals
+from robokin.spatial import nearest_rotation, rotation_angle, rotation_from_axis_angle, transform
 
 ARMS = ["puma560", "ur5e", "planar3r", "scara", "stanford-rtb", "scorbot", "kr210-r2700", "crx10ia", "panda", "iiwa14"]
 """Of every family: spherical wrist, three parallel axes, planar, a slide, five joints, elimination, redundant."""
@@ -236,3 +238,92 @@ def test_among_equals_the_one_that_is_near():
     for near in ([0.3, 0.9, 0.1, 0.2], robokin.solve_ik(robot, T, near=[1.2, -0.9, 0.1, 1.1]).nearest.q):
         nearest = robokin.solve_ik(robot, T, near=near).nearest
         assert np.max(np.abs(np.delete(nearest.q - near, 2))) < 1e-6
+
+
+# Near limits -------------------------------------------------------------------------------------------
+
+
+def corners(robot, analysis, count, rng):
+    """Configurations (count, n): inside, with some joints at limits, with all of them, in turn."""
+    reach = np.where(robot.revolute, np.pi, analysis.size)[:, None] * [-1.0, 1.0]
+    low, high = np.where(np.isinf(robot.limits), reach, robot.limits).T
+    q = configurations(robot, analysis, count, rng)
+    chance = np.array([0.0, 0.5, 1.0])[np.arange(count) % 3]
+    return np.where(rng.random(q.shape) < chance[:, None], np.where(rng.random(q.shape) < 0.5, low, high), q)
+
+
+def assert_no_worse(robot, T, q):
+    size = analysis_of(robot).size
+    _, position, angle = closest(robot, T)
+    known, turned_by = residuals(T, robokin.forward_kinematics(robot, q))
+    assert np.all(position <= known + EXACT * size)
+    assert np.all((position < known - EXACT * size) | (angle <= turned_by + 1e-7))
+
+
+@pytest.mark.parametrize(
+    ("name", "degrees"),
+    [("puma560", [160, -225, -45, 0, -100, -266]), ("gp8", [-170, 145, -70, -190, -135, 360])],
+)
+def test_turned_by_a_degree_from_a_corner(name, degrees):
+    robot = robokin.load(name)
+    q = np.radians(degrees)[None]
+    T = robokin.forward_kinematics(robot, q)
+    T[:, :3, :3] = rotation_from_axis_angle([0.0, 1.0, 0.0], np.radians(1.0)) @ T[:, :3, :3]
+    assert_no_worse(robot, T, q)
+
+
+@pytest.mark.parametrize("name", ["puma560", "gp8", "z1", "xmate-sr3", "lrmate200id", "scorbot", "panda", "yumi-left"])
+def test_no_worse_than_a_configuration_near_the_target(name, rng):
+    """Targets are turned by up to 0.01 rad from the pose of a configuration, so that its position is exact."""
+    robot = robokin.load(name)
+    q = corners(robot, analysis_of(robot), 30, rng)
+    T = robokin.forward_kinematics(robot, q)
+    for target in T:
+        axis = rng.normal(size=3)
+        turn = rotation_from_axis_angle(axis / np.linalg.norm(axis), rng.uniform(0.0, 0.01))
+        target[:3, :3] = turn @ target[:3, :3]
+    assert_no_worse(robot, T, q)
+
+
+def test_more_initial_guesses_are_turned_and_put_on_the_limits(rng):
+    robot = robokin.load("puma560")
+    analysis, limits = analysis_of(robot), robot.limits
+    q = corners(robot, analysis, 6, rng)
+    T = robokin.forward_kinematics(robot, q)
+    index = np.repeat(np.arange(6), 2)
+    more = np.repeat(q, 2, axis=0) + np.where(np.arange(12)[:, None] % 2, 2 * np.pi, 1e-3)
+    x, position, angle = nearest_configurations(analysis, T, limits, np.zeros(6), 0, (index, more))
+    assert robot.within_limits(x).all()
+    assert np.max(position) < EXACT
+    assert np.max(angle) < 1e-7
+    alone = nearest_configurations(analysis, T[3:4], limits, np.zeros(6), 0, (np.zeros(2, dtype=int), more[6:8]))
+    assert np.array_equal(alone[0][0], x[3])
+
+
+# Solutions found by search -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["xarm6", "piper", "big-yam", "puma560", "scorbot", "stanford-rtb", "adept-one"])
+def test_poses_on_a_grid_are_reached_within_the_limits(name, rng):
+    robot = robokin.load(name)
+    analysis = analysis_of(robot)
+    step = np.where(robot.revolute, np.pi / 6.0, analysis.size / 8.0)
+    q = np.round(configurations(robot, analysis, 60, rng) / step) * step
+    q = q[robot.within_limits(q)]
+    T = robokin.forward_kinematics(robot, q)
+    found = closing_nearest(analysis, T, robot.limits, np.clip(0.0, *robot.limits.T), 0)
+    assert np.all(np.bincount(found.index, minlength=len(T)) > 0)
+    assert robot.within_limits(found.q).all()
+    position, angle = residuals(T[found.index], robokin.forward_kinematics(robot, found.q))
+    assert np.max(position) <= 1.01e-9 * analysis.size
+    assert np.max(angle) <= 1.01e-9
+
+
+def test_what_is_found_alone_is_found_in_a_batch(rng):
+    robot = robokin.load("yam")
+    analysis, home = analysis_of(robot), np.clip(0.0, *robot.limits.T)
+    T = robokin.forward_kinematics(robot, corners(robot, analysis, 9, rng))
+    together = closing_nearest(analysis, T, robot.limits, home, 0)
+    for i in (0, 5, 8):
+        alone = closing_nearest(analysis, T[i : i + 1], robot.limits, home, 0)
+        assert np.array_equal(alone.q, together.q[together.index == i])

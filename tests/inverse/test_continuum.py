@@ -157,7 +157,7 @@ def test_a_joint_that_only_moves_what_is_left_open_is_held(name, task, joint, nu
         T = robokin.forward_kinematics(robot, q)
         result = robokin.solve_ik(robot, T, task=task, method=method)
         found = np.array([solution.q for solution in result.solutions])
-        assert (result.complete, result.families) == (False, not numeric)
+        assert (result.complete, result.postures) == (False, not numeric)
         assert {solution.free for solution in result.solutions} == {(joint,)}
         assert np.all(found[:, joint - 1] == 0.0)
         # Each posture once, the one that made the target among them, and the joint is free indeed.
@@ -222,7 +222,21 @@ def with_a_wrist(rng, first, tilt, opposed):
     return Robot("wrist", tuple(rows))
 
 
-def assert_one_stands_for_a_family(robot, q, middle, held=0.0, **arguments):
+def assert_nearest_on_line(robot, q, middle, near, target):
+    """No other member of a straight wrist's self-motion is nearer, by the greatest joint move."""
+    along = np.tile(q, (2001, 1))
+    s = np.linspace(-np.pi, np.pi, 2001)
+    along[:, middle - 1] += s
+    along[:, middle + 1] -= s
+    if np.max(np.abs(robokin.forward_kinematics(robot, along) - target)) > 1e-6:
+        along[:, middle + 1] += 2 * s
+    np.testing.assert_allclose(
+        robokin.forward_kinematics(robot, along), np.broadcast_to(target, (2001, 4, 4)), atol=1e-7
+    )
+    assert distances(robot, q[None], near[None])[0, 0] <= np.min(distances(robot, along, near[None])) + 1e-9
+
+
+def assert_one_stands_for_a_family(robot, q, middle, held=0.0, exact=1e-12, **arguments):
     """Each family of joints middle - 1 and middle + 1, from 0, once: exactly where it is, and no other touched."""
     T = robokin.forward_kinematics(robot, q)
     result = solve_many(robot, T, limits=False, **arguments)
@@ -235,8 +249,11 @@ def assert_one_stands_for_a_family(robot, q, middle, held=0.0, **arguments):
         assert least(distances(robot, found, found)) > 1e-6
         families = [solution.q for solution in solutions if {middle, middle + 2} <= set(solution.free)]
         for values_of_one in families:
-            assert abs(np.sin(values_of_one[middle] - q[i, middle])) < 1e-12
-            assert abs(np.sin((values_of_one[middle - 1] - held) / 2)) < 1e-12
+            assert abs(np.sin(values_of_one[middle] - q[i, middle])) < exact
+            if "near" in arguments:
+                assert_nearest_on_line(robot, values_of_one, middle, arguments["near"], target)
+            elif exact < 1e-9:
+                assert abs(np.sin((values_of_one[middle - 1] - held) / 2)) < 1e-12
         kept = [np.r_[np.sin(x[others]), np.cos(x[others]), np.sin(x[middle])] for x in families]
         assert all(np.max(np.abs(a - b)) > 1e-5 for a, b in combinations(kept, 2))
         own = np.r_[np.sin(q[i, others]), np.cos(q[i, others]), np.sin(q[i, middle])]
@@ -252,13 +269,14 @@ def test_one_stands_for_the_family_of_a_wrist(name, middle, rng):
     q[:, 4] = middle
     assert_one_stands_for_a_family(robot, q, 4)
     near = values(robot, rng, 1)[0]
-    assert_one_stands_for_a_family(robot, q, 4, near[3], near=near)
+    assert_one_stands_for_a_family(robot, q, 4, near=near)
 
 
 def test_one_stands_for_the_family_of_a_wrist_on_a_straight_elbow(rng):
     q = rng.uniform(-3, 3, (20, 6))
     q[:, 2], q[:, 4] = np.arctan2(433.07, -20.32), 0.0
-    assert_one_stands_for_a_family(robokin.load("puma560"), q, 4)
+    # The elbow is a double root, which has half of the digits, and a set of those is not made exact.
+    assert_one_stands_for_a_family(robokin.load("puma560"), q, 4, exact=1e-7)
 
 
 @pytest.mark.parametrize("first", [0, 1, 2, 3])

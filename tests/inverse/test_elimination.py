@@ -11,7 +11,14 @@ import pytest
 
 import robokin
 from robokin.inverse import fourteen
-from robokin.inverse.elimination import SPLITS, Elimination, choose_splits, doubtful, rescue_candidates
+from robokin.inverse.elimination import (
+    SPLITS,
+    Elimination,
+    choose_splits,
+    count_solutions,
+    generic_count,
+    rescue_candidates,
+)
 from robokin.inverse.loop import loop_of
 from robokin.inverse.newton import closing_at, determinants, joint_motion, refine
 from robokin.kinematics.chain import Chain, chain_of
@@ -82,8 +89,10 @@ def share_found(loop, split, wanted, steps=2):
 def rescued(loop, splits, wanted):
     """What the best split finds and, where that is doubtful, the rescue."""
     closing = closing_at(loop, wanted)
-    index, values = solutions(loop, closing, Elimination(loop, splits[0]).candidates(closing), 12)
-    again = np.flatnonzero(doubtful(loop, len(wanted), index, values))
+    real, imaginary = Elimination(loop, splits[0]).all_candidates(closing)
+    index, values = solutions(loop, closing, real, 12)
+    parts = [(index, values), (imaginary.index, imaginary.values)]
+    again = np.flatnonzero(count_solutions(loop, closing, parts, 2).number != generic_count(loop, splits))
     more = rescue_candidates(loop, splits, closing[again])
     return found(loop, np.append(index, again[more.index]), np.concatenate([values, more.values]), wanted)
 
@@ -158,6 +167,21 @@ def test_arms_on_sale(name):
     splits, wanted = choose_splits(loop), values_of(loop, np.random.default_rng(1), 60)
     assert splits[0] < SPLITS
     assert rescued(loop, splits, wanted) == 1.0
+
+
+@pytest.mark.parametrize("name", ["crx10ia", "j2n6s200", "xarm6", "hc10", "gen3-lite", "piper", "crx20ia-l"])
+def test_an_elimination_finds_all_sixteen_complex_solutions_of_an_arm_on_sale(name):
+    """Six joints have at most 16 (E. J. F. Primrose, Mech. Mach. Theory 21, 1986), and these arms have them all."""
+    loop = loop_of(chain_of(robokin.load(name)))
+    splits = choose_splits(loop)
+    assert generic_count(loop, splits) == 16
+    closing = closing_at(loop, values_of(loop, np.random.default_rng(12), 40))
+    parts = [(part.index, part.values) for part in Elimination(loop, splits[0]).all_candidates(closing)]
+    counted = count_solutions(loop, closing, parts, 2)
+    assert np.max(counted.number) == 16
+    assert np.mean(counted.number == 16) >= 0.95
+    complex_ = np.abs(counted.values.imag).max(axis=1) > 1e-7
+    assert counted.kept.sum() + (counted.kept & complex_).sum() == counted.number.sum()
 
 
 @pytest.mark.parametrize("name", ["crx10ia", "j2n6s200", "xarm6", "hc10", "gen3-lite", "piper"])

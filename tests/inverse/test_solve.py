@@ -12,7 +12,7 @@ import robokin
 from robokin.description import library_names, load_any
 from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.branches import _meeting
+from robokin.inverse.joint_axes import nearest_point
 from robokin.inverse.solve import solve_many
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_angle, rotation_from_rpy, transform
@@ -382,4 +382,4 @@ def test_the_point_where_two_axes_meet_is_found_from_any_points_on_them():
     rng = np.random.default_rng(3)
     meet, z0, z1 = rng.normal(size=(3, 20, 3))
     o0, o1 = meet + rng.normal(size=(20, 1)) * z0, meet + rng.normal(size=(20, 1)) * z1
-    assert np.abs(_meeting(z0, o0, z1, o1) - meet).max() < 1e-12
+    assert np.abs(nearest_point(z0, o0, z1, o1) - meet).max() < 1e-12

@@ -55,6 +55,12 @@ def test_every_sampled_position_of_arms_with_more_joints_is_reachable(name, rng)
     assert np.count_nonzero(~reachable(space, positions(space, q).T)) == 0
 
 
+def test_points_beyond_whole_numbers_are_out_of_reach():
+    for name in ("puma560", "ur5e", "iiwa14"):
+        points = [[1e30, 0.0, 0.0], [1e18, 1e18, -1e19], [0.3, 0.2, 0.5], [-1e25, 3.0, 1e22]]
+        assert reachable(space_of(robokin.load(name)), points).tolist() == [False, False, True, False]
+
+
 def test_nothing_beyond_the_greatest_distance_or_out_of_the_plane_is_reachable(rng):
     for name in ("puma560", "planar3r", "panda"):
         space = space_of(robokin.load(name))

@@ -59,7 +59,9 @@ def command(
         str | None, typer.Option("--approach", metavar="X,Y,Z", help="With --xyz: the tool's z axis only, any roll.")
     ] = None,
     xy: Annotated[str | None, typer.Option("--xy", metavar="X,Y", help="The position for a planar arm.")] = None,
-    phi: Annotated[str | None, typer.Option("--phi", metavar="PHI", help="With --xy: the hand's angle.")] = None,
+    phi: Annotated[
+        str | None, typer.Option("--phi", metavar="PHI", help="With --xy: the angle of the end effector.")
+    ] = None,
     input: Annotated[
         str | None,
         typer.Option(
@@ -72,7 +74,12 @@ def command(
     ] = None,
     near: Annotated[
         str | None,
-        typer.Option("--near", metavar="Q", help="Order by the greatest joint move from here; values or a named pose."),
+        typer.Option(
+            "--near",
+            metavar="Q",
+            help="Order by the greatest joint move from these values or this named pose; of a self-motion the "
+            "nearest member is listed.",
+        ),
     ] = None,
     method: Annotated[
         str | None, typer.Option("--method", metavar="METHOD", help="auto, analytic or numeric.  [default: auto]")
@@ -81,15 +88,28 @@ def command(
     max_: Annotated[
         str | None, typer.Option("--max", metavar="N", help="At most so many solutions for a target.")
     ] = None,
+    turns: Annotated[
+        bool, typer.Option("--turns", help="Also the ±360° equivalents of each solution within the joint limits.")
+    ] = False,
+    hold: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--hold",
+            metavar="JOINT=VALUE",
+            help="Fix a joint, such as q3=20, and solve for the others; repeatable.",
+        ),
+    ] = None,
     seed: Annotated[
         str | None,
-        typer.Option("--seed", metavar="N", help="Seed of what is searched for.  [default: 0]"),
+        typer.Option("--seed", metavar="N", help="Random seed (default 0)."),
     ] = None,
     tol_position: Annotated[
-        str | None, typer.Option("--tol-position", metavar="L", help="Take the nearest pose when it is off by no more.")
+        str | None,
+        typer.Option("--tol-position", metavar="L", help="Take the nearest pose if its position error is no more."),
     ] = None,
     tol_angle: Annotated[
-        str | None, typer.Option("--tol-angle", metavar="A", help="Take the nearest pose when it is turned by no more.")
+        str | None,
+        typer.Option("--tol-angle", metavar="A", help="Take the nearest pose if its angle error is no more."),
     ] = None,
     explain: Annotated[
         bool, typer.Option("--explain", help="Also the closed-form steps with the numbers in them, as a lecture does.")
@@ -107,6 +127,9 @@ def command(
     lengths are in the description's units unless --angle and --length say otherwise. Solutions are exact; with
     a tolerance, the nearest pose that can be reached will do where it is within it.
 
+    The answer says whether all solutions are listed, and why that is known. Where joints can move while the pose
+    stays (a self-motion), one solution stands for it and its intervals within the limits are given.
+
     The status is 3 when there is no solution, or in a batch when a target has none; the reason is said, and the
     configuration that comes nearest. A CSV has a row for each solution, which robokin fk reads; a target without
     one has a row with solution 0, which robokin fk leaves out.
@@ -117,12 +140,15 @@ def command(
         robokin ik puma560 --xyz 500,100,300 --approach 0,0,-1 --json
         robokin ik planar3r-brac --xy 26.4743,50.8716 --phi 85
         robokin ik planar3r-brac --xy 26.4743,50.8716 --phi 85 --explain
+        robokin ik panda --xyz 400,100,400 --rpy 180,0,0 --hold q3=20
+        robokin ik ur5e --xyz 400,200,300 --rpy 180,0,0 --turns
         robokin ik scorbot --xyz 300,40,200 --rpy 0,170,8 --tol-angle 1
         robokin fk puma560 -i joints.csv -f csv | robokin ik puma560 -i - -f csv
     """
     from robokin.cli import say
     from robokin.cli.answers import Answers
     from robokin.cli.arguments import joint_factors, load_robot, parse_configuration
+    from robokin.cli.held_joints import parse_hold
     from robokin.cli.output.numbers import counted
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.target_rows import read_targets
@@ -142,15 +168,22 @@ def command(
     if input is not None and given:
         raise InputError(f"--input and {given[0]} exclude each other, expected one of them")
     if explain:
-        _check_explain(kind, input, method)
+        _check_explain(kind, input, method, hold)
+    if turns and no_limits:
+        raise InputError("--turns and --no-limits exclude each other, expected full turns within the limits or neither")
+    factors = joint_factors(model, units)
     arguments: dict[str, Any] = {
         "limits": not no_limits,
         "method": choose(method, METHODS, "--method") or "auto",
         "most": _count(max_, "--max", 1),
         "seed": _count(seed, "--seed", 0) or 0,
+        "turns": turns,
     }
+    held = parse_hold(hold or [], model, units, not no_limits)
+    if held:
+        arguments["hold"] = {joint: value * factors[joint] for joint, value in held.items()}
     if near is not None:
-        arguments["near"] = parse_configuration(near, model, units, "--near") * joint_factors(model, units)
+        arguments["near"] = parse_configuration(near, model, units, "--near") * factors
     tolerances = (
         _tolerance(tol_position, "--tol-position", units, angle=False),
         _tolerance(tol_angle, "--tol-angle", units, angle=True),
@@ -168,7 +201,7 @@ def command(
     else:
         blocks = read_targets(input, units)
 
-    answers = Answers(model, units, tolerances, arguments, alone=input is None, explain=explain)
+    answers = Answers(model, units, tolerances, arguments, alone=input is None, explain=explain, held=held)
     with sink(output) as stream:
         for data in answers.write(kind, blocks, stream):
             stream.write(data)
@@ -179,12 +212,14 @@ def command(
     return NO if answers.unreached else DONE
 
 
-def _check_explain(kind: str, input: str | None, method: str | None) -> None:
+def _check_explain(kind: str, input: str | None, method: str | None, hold: list[str] | None) -> None:
     """Raise InputError for what a lesson does not go with."""
     from robokin.errors import InputError
 
     if input is not None:
         raise InputError("--explain and --input exclude each other, expected one target, as --pose gives it")
+    if hold:
+        raise InputError("--explain and --hold exclude each other, expected the steps for the whole arm")
     if kind not in ("table", "json", "jsonl"):
         raise InputError(f"--explain: found the format {kind}, expected table, json or jsonl")
     if method == "numeric":

@@ -1,0 +1,74 @@
+"""What `--hold` says: joints of a robot and the values that they are held at."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from robokin.cli.answer_families import joined
+from robokin.cli.arguments import joint_factors, parse_numbers
+from robokin.cli.output.numbers import show
+from robokin.errors import InputError, did_you_mean
+from robokin.inverse.hold import held_inside
+from robokin.model import Robot
+from robokin.units import Units
+
+OPTION = "--hold"
+
+
+def parse_hold(texts: Sequence[str], robot: Robot, units: Units, limits: bool) -> dict[int, float]:
+    """The held joints, from 0, with their values in the units, of texts such as `q3=20`, `3=20` or `elbow=20`.
+
+    Raises InputError for a joint that the robot does not have, one that is held twice, a value that is no number or,
+    where `limits` count, outside the joint's limits.
+    """
+    held: dict[int, float] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        name = name.strip()
+        if not equals or not name or not value.strip():
+            raise InputError(f"{OPTION}: found '{text}', expected JOINT=VALUE, such as q3=20")
+        joint = _joint(name, robot)
+        if joint in held:
+            raise InputError(f"{OPTION}: q{joint + 1} is held twice, expected one value for a joint")
+        option = f"{OPTION} {name}"
+        turns = bool(robot.revolute[joint])
+        (number,) = parse_numbers(value, option, [turns], units, "one value").tolist()
+        factor = float(joint_factors(robot, units)[joint])
+        if limits and not held_inside(robot, joint, number * factor):
+            low, high = (robot.limits[joint] / factor).tolist()
+            unit = units.angle if turns else units.length
+            raise InputError(
+                f"{option}: found {show(number)}, expected {show(low)} to {show(high)} {unit}: the joint's limits, "
+                f"which --no-limits leaves out"
+            )
+        held[joint] = number
+    if held and len(held) == robot.n:
+        raise InputError(f"{OPTION}: all {robot.n} joints are held, expected at least one that can move")
+    return held
+
+
+def in_words(held: Mapping[int, float]) -> str:
+    """`q3 held at 20`, or nothing; joints from 0, values in the units."""
+    if not held:
+        return ""
+    at = {joint: show(value) for joint, value in sorted(held.items())}
+    if len(set(at.values())) == 1 and len(at) > 1:
+        return f"{joined([f'q{joint + 1}' for joint in at])} held at {next(iter(at.values()))}"
+    return joined([f"q{joint + 1} held at {value}" for joint, value in at.items()])
+
+
+def _joint(name: str, robot: Robot) -> int:
+    """The joint, from 0, that is meant: `q3` or `3` by its place, or by the name in the description."""
+    names = [joint.name for joint in robot.joints]
+    numbers = [f"q{i}" for i in range(1, robot.n + 1)]
+    named = [i for i, own in enumerate(names) if own == name and not own.isdecimal()]
+    placed = [i for i in range(robot.n) if name in (numbers[i], str(i + 1))]
+    found = sorted({*named, *placed})
+    if len(found) == 1:
+        return found[0]
+    if found:
+        listed = " and ".join(f"joint {i + 1}" for i in found)
+        raise InputError(f"{OPTION}: '{name}' names {listed}, expected the number of one of them")
+    known = [*numbers, *(own for own in names if not own.isdecimal())]
+    expected = f", expected q1 to q{robot.n}" if robot.n > 1 else ", expected q1"
+    raise InputError(f"{OPTION}: {robot.name} has no joint '{name}'{did_you_mean(name, known) or expected}")

@@ -1,0 +1,200 @@
+"""Inverse kinematics of an arm with some joints held: the rest is an arm of its own, and is solved as that.
+
+Statement. Given values for some joints of an arm of n, find every value of the others that reaches a pose.
+Derivation. A joint that stands still is a constant transform between its neighbours: the row of the table becomes a
+fixed one, theta + offset + value of a revolute joint, d + offset + value of a prismatic one, or in frames
+origin · motion(offset + value). What is left is an arm of fewer joints, for which everything holds that is said of
+arms: a redundant one of seven joints with one held has finitely many solutions at a generic pose, and they can all
+be found. Of its configurations the held values make configurations of the whole arm.
+Degenerate case. At a held value at which the rest cannot do all that it otherwise could (two of its axes on one
+line), the rest is analysed as the special arm that it then is.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.errors import InputError
+from robokin.inverse.analysis import analysis_of
+from robokin.inverse.branches import branch_names
+from robokin.inverse.result import Arc, BatchResult, Family, Result, Solution
+from robokin.kinematics.chain import row_constants
+from robokin.model import Joint, JointType, Robot
+from robokin.model.robot import LIMIT_TOLERANCE
+from robokin.spatial import rotation_transform
+
+Array = NDArray[np.float64]
+
+KEPT = 16
+"""Arms with joints held that are kept for one robot: enough for a few values in turn; a sweep over many values must
+not fill the memory."""
+
+_kept: WeakKeyDictionary[Robot, OrderedDict[tuple[tuple[int, float], ...], HeldArm]] = WeakKeyDictionary()
+
+
+@dataclass(frozen=True, eq=False)
+class HeldArm:
+    """A robot's table with some joints held.
+
+    n: joints of the whole robot; joints: (h,) the held ones, from 0; values: (h,) theirs [rad | m]; inside: whether
+    these are within the limits; part: the arm of the others; free: (n - h,) which these are, from 0.
+    """
+
+    n: int
+    joints: NDArray[np.intp]
+    values: Array
+    inside: bool
+    part: Robot
+    free: NDArray[np.intp]
+
+    def own(self, q: Array) -> Array:
+        """Those of joint values (..., n) that are not held, (..., n - h)."""
+        return q[..., self.free]
+
+    def whole(self, q: Array) -> Array:
+        """Joint values (..., n) from those of the part (..., n - h); NaN where these are (padded rows)."""
+        out = np.empty((*q.shape[:-1], self.n))
+        out[..., self.free] = q
+        out[..., self.joints] = np.where(np.isnan(q[..., :1]), np.nan, self.values)
+        return out
+
+    def numbers(self, joints: tuple[int, ...]) -> tuple[int, ...]:
+        """Joints of the part in the whole robot's numbers; both count from 1."""
+        return tuple(int(self.free[i - 1]) + 1 for i in joints)
+
+
+def held_arm(robot: Robot, hold: Mapping[int, float]) -> HeldArm:
+    """The arm that is left of a robot when joints (from 0) are held at values [rad | m]. Kept for the next call.
+
+    Raises InputError for joints that the robot does not have, values that are no numbers, and when nothing is left.
+    """
+    checked = tuple(sorted(_checked(robot, hold).items()))
+    kept = _kept.setdefault(robot, OrderedDict())
+    if checked in kept:
+        kept.move_to_end(checked)
+        return kept[checked]
+    arm = kept[checked] = _held(robot, dict(checked))
+    if len(kept) > KEPT:
+        kept.popitem(last=False)
+    return arm
+
+
+def check_held_limits(robot: Robot, arm: HeldArm) -> None:
+    """Raise InputError where a held value is outside the joint's limits."""
+    for joint, value in zip(arm.joints.tolist(), arm.values.tolist(), strict=True):
+        if not held_inside(robot, joint, value):
+            low, high = robot.limits[joint].tolist()
+            unit = "rad" if robot.revolute[joint] else "m"
+            raise InputError(
+                f"q{joint + 1} is held at {value:.6g} {unit}, outside its limits; "
+                f"expected {low:.6g} to {high:.6g} {unit}, or limits=False"
+            )
+
+
+def held_inside(robot: Robot, joint: int, value: float) -> bool:
+    """Whether a value [rad | m] of a joint (from 0) is within its limits, which are inclusive."""
+    low, high = robot.limits[joint].tolist()
+    return bool(low - LIMIT_TOLERANCE <= value <= high + LIMIT_TOLERANCE)
+
+
+def with_held_joints(robot: Robot, arm: HeldArm, batch: BatchResult) -> BatchResult:
+    """The answers of the part as answers of the robot: the held values put in, joints by the robot's numbers.
+
+    The solutions are some of all that the robot has at the pose. Where these are finitely many, the robot's names tell
+    them apart; a redundant robot's do not, and the postures are named as the part's.
+    """
+    renamed = analysis_of(robot).redundancy == 0
+    listed = np.arange(batch.q.shape[1]) < batch.count[:, None]
+    q = arm.whole(batch.q)
+
+    def single(i: int) -> Result:
+        return _whole_result(arm, batch[i], robot if renamed else None)
+
+    def branches() -> list[str]:
+        return branch_names(robot, q[listed]) if renamed else batch.branches()
+
+    return replace(batch, q=q, within_limits=batch.within_limits & arm.inside, single=single, branches=branches)
+
+
+def own_near(arm: HeldArm, near: Array | None) -> Array | None:
+    """The part's own of the wished values near: (n,) [rad | m]."""
+    return None if near is None else arm.own(near)
+
+
+def _checked(robot: Robot, hold: Mapping[int, float]) -> dict[int, float]:
+    checked: dict[int, float] = {}
+    for joint, value in hold.items():
+        if isinstance(joint, bool) or not isinstance(joint, (int, np.integer)) or not 0 <= joint < robot.n:
+            raise InputError(
+                f"hold: found joint {joint!r}, expected 0 to {robot.n - 1}: the joints of {robot.name} count from 0"
+            )
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            number = np.nan
+        if not np.isfinite(number):
+            raise InputError(f"hold: found {value!r} for joint {joint}, expected a finite number [rad | m]")
+        checked[int(joint)] = number
+    if len(checked) == robot.n:
+        raise InputError(f"all {robot.n} joints of {robot.name} are held, expected at least one that can move")
+    return checked
+
+
+def _held(robot: Robot, hold: dict[int, float]) -> HeldArm:
+    rows, number = [], 0
+    for row in robot.rows:
+        if row.moves:
+            rows.append(_standing(row, hold[number], robot.convention) if number in hold else row)
+            number += 1
+        else:
+            rows.append(row)
+    names = ", ".join(f"q{i + 1}" for i in hold)
+    part = replace(robot, name=f"{robot.name} with {names} held", rows=tuple(rows), poses={}, texts=())
+    joints = np.array(list(hold), dtype=np.intp)
+    free = np.setdiff1d(np.arange(robot.n), joints).astype(np.intp)
+    inside = all(held_inside(robot, joint, value) for joint, value in hold.items())
+    return HeldArm(robot.n, joints, np.array(list(hold.values())), inside, part, free)
+
+
+def _standing(row: Joint, value: float, convention: str) -> Joint:
+    """A row as a fixed one, its joint standing at a value [rad | m]."""
+    moved = row.offset + value
+    turns = row.type is JointType.REVOLUTE
+    fixed = replace(row, type=JointType.FIXED, offset=0.0, limits=(-np.inf, np.inf), texts=())
+    if convention != "frames":
+        return replace(fixed, theta=row.theta + moved) if turns else replace(fixed, d=row.d + moved)
+    before, after = row_constants(row, convention)
+    motion = rotation_transform([0.0, 0.0, 1.0], moved) if turns else np.eye(4)
+    motion[2, 3] += 0.0 if turns else moved
+    return replace(fixed, origin=before @ motion @ after, axis=None)
+
+
+def _whole_result(arm: HeldArm, result: Result, named: Robot | None) -> Result:
+    """The answer for one target; `named` is the robot that its postures are named for, None for the part's names."""
+    shown = [*result.solutions, *([result.nearest] if result.nearest is not None else [])]
+    names = [solution.branch for solution in shown]
+    if named is not None and shown:
+        names = branch_names(named, arm.whole(np.array([solution.q for solution in shown])))
+    whole = [_whole_solution(arm, solution, name) for solution, name in zip(shown, names, strict=True)]
+    solutions = tuple(whole[: len(result.solutions)])
+    nearest = whole[-1] if result.nearest is not None else None
+    families = tuple(_whole_family(arm, family) for family in result.families)
+    return replace(result, solutions=solutions, nearest=nearest, families=families)
+
+
+def _whole_solution(arm: HeldArm, solution: Solution, name: str) -> Solution:
+    return replace(
+        solution, q=arm.whole(solution.q), branch=name, within_limits=solution.within_limits and arm.inside,
+        free=arm.numbers(solution.free),
+    )  # fmt: skip
+
+
+def _whole_family(arm: HeldArm, family: Family) -> Family:
+    arcs = tuple(Arc(arm.whole(arc.q), arc.whole) for arc in family.arcs)
+    return replace(family, joints=arm.numbers(family.joints), arcs=arcs)

@@ -1,0 +1,289 @@
+"""All complex solutions of a six-joint loop by following paths, and an account of where each of them ends.
+
+Statement. A loop has a generic number N of complex solutions: no target has more isolated ones. From a target at which
+all N are known as many paths lead to any other. Where each of them ends in a regular solution, in a singular one or at
+infinity, all regular solutions have been found, also where the arm is singular.
+Derivation. Near the target of a regular solution all targets have one close by, so that it is where one of the N paths
+from a start in general position ends. Regular ends are then all regular solutions.
+Degenerate case. Two paths may pass so near to each other that a step goes over to the wrong one; then both end alike,
+and a regular solution is missing. An account is closed only where two starts, with other targets and so other paths,
+agree. For a real target the conjugates of solutions are solutions: this is checked as well.
+Reference. C. Wampler, A. Morgan, "Solving the 6R inverse position problem using a generic-case solution methodology",
+Mechanism and Machine Theory 26 (1991); A. Morgan, A. Sommese, "Coefficient-parameter polynomial continuation", Applied
+Mathematics and Computation 29 (1989).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.complex_newton import Complex, Index, Mask, complex_refine, distinct, regular
+from robokin.inverse.loop import Loop
+from robokin.inverse.monodromy import Known, Start, another_start, started, two_starts
+from robokin.inverse.newton import refine
+from robokin.inverse.paths import NEAR, Points, distance, points_of, track
+
+Array = NDArray[np.float64]
+Counts = NDArray[np.intp]
+
+REGULAR = 1e-5
+"""Least singular value of S above which an end is regular: two solutions that are about as far apart meet at targets
+that are about the square of this away, which paths must come nearer to than that."""
+
+APART = 1e-6
+"""Regular ends that differ by less in every joint [rad | size] are one: with singular values above `REGULAR` rounding
+moves them by 1e-10."""
+
+GROWS_FROM, APART_MOST = 7.0, 1e-3
+"""|Im q| [rad] from which that distance grows with exp(2 |Im q|), as rounding does, and its greatest value. No solution
+out there is real, but as many have to be counted."""
+
+MOVED = 1e-2
+"""Greatest motion [rad | size] of an end's last corrections: what is drawn further does not belong to its path."""
+
+REAL = 1e-7
+"""Imaginary part [rad | size] up to which a regular end is real: of a pair of conjugates of which one has singular
+values above `REGULAR` each has a larger one."""
+
+NEARLY_REAL = 0.5
+"""Imaginary part [rad | size] up to which a singular end is taken for a real one: where four solutions meet, its path
+was left at a distance like the fourth root of 1e-9, times what the arm's motion is worth there (0.3 has been seen)."""
+
+SPEED = 0.05
+"""Least u times speed of a path that leads to infinity, where it tends to a fraction that is rarely below 1/4; at
+singular ends it tends to zero."""
+
+GONE = 2.5
+"""|Im q| [rad] (or the logarithm of a slide's length [size]) that such a path has reached at u = 1e-9, 1/8 of 20.7 and
+more. A path to a place where four solutions meet, or near a self-motion, may be fast as well, but has not gone far."""
+
+LATE = 1e-3
+"""Value of u before which no path is taken to have gone to infinity unless it is as far out as `OUT`."""
+
+SOON, OUT = 0.02, 10.0
+"""Where it goes with the square of 1 / u, rounding stops it by u = 0.01 at this |Im q| [rad]. A path that had come
+there on its way to somewhere else would have passed the target where it is infinite within exp(-10) or so."""
+
+POLISH = 4
+"""Newton steps for ends; from 1e-3, where paths that passed close to a singular solution may have been left, and
+less."""
+
+STEPS = 25
+"""Newton steps for the real parts of singular ends: each but halves the error at a double solution."""
+
+SEED = 1e-7
+"""What a singular end may then lack of closing [size and rad]: more, and it belongs to complex solutions."""
+
+SAME = 1e-6
+"""Singular ends that differ by less in every joint [rad | size] are listed once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Account:
+    """Where all paths to m targets end.
+
+    count: N; index: (s,) and values: (s, 6) the regular real solutions [rad | size], the arguments of J1 … J6;
+    singular_index, singular_values: the real configurations near ends that are singular, which lie on self-motions or
+    are solutions where several meet; regular, singular, infinite, lost: (m,) the paths of one start that ended so, and
+    real: (m,) how many of the regular ends are real. closed: (m,) whether all N solutions were found to be regular, or
+    from two starts no path was lost and both found the same regular ends, of which no other start found more.
+    """
+
+    count: int
+    index: Index
+    values: Array
+    singular_index: Index
+    singular_values: Array
+    regular: Counts
+    real: Counts
+    singular: Counts
+    infinite: Counts
+    lost: Counts
+    closed: Mask
+
+    def words(self, i: int) -> str:
+        """A sentence with the numbers for target i."""
+        regular, real = self.regular[i], self.real[i]
+        parts = [f"{regular} end{'' if regular != 1 else 's'} in regular solutions ({real} real)"]
+        if self.singular[i]:
+            parts.append(f"{self.singular[i]} in singular ones")
+        if self.infinite[i]:
+            parts.append(f"{self.infinite[i]} at infinity")
+        if self.lost[i]:
+            parts.append(f"{self.lost[i]} on the way")
+        listed = parts[0] if len(parts) == 1 else ", ".join(parts[:-1]) + " and " + parts[-1]
+        return f"of {self.count} paths {listed}" + ("" if self.closed[i] else "; two starts do not agree")
+
+
+@dataclass(frozen=True, eq=False)
+class _Ends:
+    """Where the paths (s,) from one start end: the target of each, its values (s, 6) [rad | size], and whether these
+    are a regular solution, a singular one, at infinity, or where it was lost on the way."""
+
+    target: Index
+    values: Complex
+    regular: Mask
+    singular: Mask
+    infinite: Mask
+    lost: Mask
+
+
+class Homotopy:
+    """What follows the paths of a loop. Starts are made when they are first needed, and kept."""
+
+    def __init__(self, loop: Loop, known: Callable[[], list[Known]] | None = None) -> None:
+        """`known` gives all solutions at two targets, if another solver can: a start is then one track away."""
+        self.loop, self._known = loop, known
+        self._starts: list[Start] = []
+
+    @cached_property
+    def count(self) -> int | None:
+        """N, the generic number of complex solutions; None where two independent searches do not agree on it.
+
+        It is even: an odd one is not believed.
+        """
+        found = started(self.loop, self._known()) if self._known is not None else None
+        found = found or two_starts(self.loop)
+        if found is None:
+            return None
+        number: int = found[0].values.shape[1]
+        if number % 2:
+            return None
+        self._starts = list(found)
+        return number
+
+    def account(self, closing: Array, most: int = 4) -> Account:
+        """Follow all paths to L6 (m, 4, 4) from two starts, and from more, up to `most`, where these do not agree.
+
+        Raises ValueError where the number of solutions is not known.
+        """
+        if self.count is None:
+            raise ValueError("the number of complex solutions of this arm could not be established")
+        tried = self._ends(closing, range(2), np.arange(len(closing)))
+        verdict = _judged(self.loop, self.count, len(closing), tried)
+        for k in range(2, most):
+            if verdict.closed.all() or self._start(k) is None:
+                break
+            tried += self._ends(closing, range(k, k + 1), np.flatnonzero(~verdict.closed))
+            verdict = _judged(self.loop, self.count, len(closing), tried)
+        return _with_seeds_refined(self.loop, closing, verdict)
+
+    def _start(self, k: int) -> Start | None:
+        """Start k, from 0: the first two are independent, further ones are reached from the first, if they are."""
+        while len(self._starts) <= k:
+            more = another_start(self.loop, self._starts[0], seed=100 + len(self._starts))
+            if more is None:
+                return None
+            self._starts.append(more)
+        return self._starts[k]
+
+    def _ends(self, closing: Array, starts: range, chosen: Index) -> list[_Ends]:
+        """The ends of the paths from each of some starts to the chosen targets, all followed together."""
+        loop, every = self.loop, [self._starts[k] for k in starts]
+        N = every[0].values.shape[1]
+        target = np.tile(np.repeat(chosen, N), len(every))
+        home = [start.point.pick(np.zeros(N * len(chosen), dtype=np.intp)) for start in every]
+        from_all = Points(
+            np.concatenate([point.r for point in home], axis=1), np.concatenate([point.p for point in home], axis=1)
+        )
+        at = np.concatenate([np.tile(start.values, (1, len(chosen))) for start in every], axis=1)
+        ends = track(loop, from_all, points_of(closing).pick(target), at)
+        values = np.ascontiguousarray(ends.values.T)
+        # Paths left shortly before a nearly singular solution may still reach it: all that came near the end are tried.
+        late = np.flatnonzero(~ends.lost & (ends.u < LATE))
+        refined, residual = complex_refine(loop, closing, target[late], values[late], POLISH)
+        moved = np.abs(refined - values[late]).max(axis=1, initial=0.0)
+        good = np.flatnonzero(regular(loop, refined, residual, REGULAR) & (moved < MOVED))
+        values[late[good]] = refined[good]
+        whole = np.zeros(len(target), dtype=bool)
+        whole[late[good]] = True
+        out = distance(loop, ends.values)
+        gone = np.where(ends.u < LATE, out > GONE, (ends.u < SOON) & (out > OUT))
+        infinite = ~whole & gone & (ends.speed > SPEED)
+        lost = ~whole & ~infinite & (ends.lost | (ends.u > NEAR))
+        singular = ~whole & ~infinite & ~lost
+        parts = [slice(k * N * len(chosen), (k + 1) * N * len(chosen)) for k in range(len(every))]
+        return [_Ends(target[p], values[p], whole[p], singular[p], infinite[p], lost[p]) for p in parts]
+
+
+def _judged(loop: Loop, count: int, m: int, tried: list[_Ends]) -> Account:
+    """The account of m targets from the ends of several starts of `count` paths each."""
+    sound = np.stack([_sound(loop, m, ends) for ends in tried])
+    target, values = _united(loop, tried)
+    number = np.bincount(target, minlength=m)
+    found = np.stack([_number(m, ends.target, ends.regular) for ends in tried])
+    agrees = sound & (found == number)
+    whole = number == count
+    best, every = np.argmax(agrees, axis=0), np.arange(m)
+
+    def of_one_start(kind: str) -> Counts:
+        numbers = np.stack([_number(m, ends.target, getattr(ends, kind)) for ends in tried])[best, every]
+        return np.asarray(np.where(whole, 0, numbers))
+
+    real = np.abs(values.imag).max(axis=1, initial=0.0) < REAL
+    singular = [ends.singular & (np.abs(ends.values.imag).max(axis=1, initial=0.0) < NEARLY_REAL) for ends in tried]
+    return Account(
+        count,
+        target[real],
+        values[real].real.copy(),
+        np.concatenate([ends.target[chosen] for ends, chosen in zip(tried, singular, strict=True)]),
+        np.concatenate([ends.values[chosen].real for ends, chosen in zip(tried, singular, strict=True)]),
+        np.where(whole, count, found[best, every]),
+        np.bincount(target[real], minlength=m),
+        of_one_start("singular"),
+        of_one_start("infinite"),
+        of_one_start("lost"),
+        whole | ((agrees.sum(axis=0) >= 2) & (number < count)),
+    )
+
+
+def _united(loop: Loop, tried: list[_Ends]) -> tuple[Index, Complex]:
+    """The regular ends from all starts, and their conjugates, each once: targets (s,) and values (s, 6)."""
+    target = np.concatenate([ends.target[ends.regular] for ends in tried])
+    values = np.concatenate([ends.values[ends.regular] for ends in tried])
+    target, values = np.concatenate([target, target]), np.concatenate([values, values.conj()])
+    once = distinct(loop, target, values, _apart(values))
+    return target[once], values[once]
+
+
+def _sound(loop: Loop, m: int, ends: _Ends) -> Mask:
+    """(m,) whether no path was lost, no two ended in the same regular solution, and conjugates are among the ends."""
+    target, values = ends.target[ends.regular], ends.values[ends.regular]
+    number = np.bincount(target, minlength=m)
+    once = distinct(loop, target, values, _apart(values))
+    twice = np.concatenate([target, target])
+    conjugates = np.concatenate([values, values.conj()])
+    both = distinct(loop, twice, conjugates, _apart(conjugates))
+    all_arrive = (np.bincount(ends.target, minlength=m) > 0) & (_number(m, ends.target, ends.lost) == 0)
+    return np.asarray(all_arrive & (number == _number(m, target, once)) & (number == _number(m, twice, both)))
+
+
+def _with_seeds_refined(loop: Loop, closing: Array, account: Account) -> Account:
+    """The account with the singular configurations brought onto solutions.
+
+    Those that are near none are left out, and their targets not closed: real solutions may be near by, so near to
+    each other that they were not told apart.
+    """
+    index, values = account.singular_index, account.singular_values
+    values, position, angle = refine(loop, closing, index, values, STEPS)
+    near = np.hypot(position, angle) < SEED
+    closed = account.closed.copy()
+    closed[index[~near]] = False
+    index, values = index[near], values[near]
+    once = distinct(loop, index, values, SAME)
+    return replace(account, singular_index=index[once], singular_values=values[once], closed=closed)
+
+
+def _apart(values: Complex) -> Array:
+    """The distance (s,) [rad | size] below which regular ends (s, 6) are one."""
+    beyond = np.abs(values.imag).max(axis=1, initial=0.0) - GROWS_FROM
+    return np.asarray(np.minimum(APART * np.exp(2.0 * np.clip(beyond, 0.0, GROWS_FROM)), APART_MOST))
+
+
+def _number(m: int, target: Index, chosen: Mask) -> Counts:
+    return np.bincount(target[chosen], minlength=m)

@@ -1,0 +1,312 @@
+"""Of each self-motion one member, and double roots to their last digit: what is listed at singular poses.
+
+Statement. Among the solutions of a target there may be many members of one self-motion, and double roots known to half
+of their digits. List each self-motion once, by its member nearest to a wish within the joint limits, and each double
+root exactly.
+How. Solutions at which the Jacobian has lost rank are classified (`self_motion`): those that stand alone, exact where
+they are double; and members of sets, which are followed, each once (`solution_sets`). A set has its nearest member
+within the limits (`arcs`), or where none is within them any member, which then is outside.
+Without a wish the member of a wrist's self-motion is the one with its first joint at rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.curve_tracing import Curve
+from robokin.inverse.nearest_member import member_near, nearest_on
+from robokin.inverse.null_motion import ZERO
+from robokin.inverse.numeric import error_and_jacobian
+from robokin.inverse.self_motion import classify
+from robokin.inverse.solution_sets import families
+from robokin.inverse.spherical import SphericalTriple
+from robokin.inverse.verify import CLOSES, Found, within_limits
+from robokin.inverse.window import least_singular_values
+from robokin.kinematics.chain import Chain
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Flags = NDArray[np.bool_]
+
+TURN = 2.0 * np.pi
+
+UNRESOLVED = 3e-8
+"""Least singular value below which a solution is a multiple one: neighbours within `NEIGHBOURS` are the same root.
+Rounding takes a double root apart by 1e-8, and the singular value is about as large; two roots that are farther apart
+are two."""
+
+NEIGHBOURS = 2e-3
+"""How far rounding takes a root apart that counts many times [rad | size]: the seventh root of 1e-16. Also how near to
+a self-motion such a root may be and still belong to it, where the error hardly grows at right angles to it."""
+
+
+SLOW = 1e-3
+"""Least singular value below which Newton's steps may stall on the way to a root."""
+
+BESIDE = 2e-3
+"""How near [rad | size] to a solution another one that is singular too, or has not settled, is taken for the same."""
+
+CROWDED = 0.3
+"""Distance [rad | size] of singular solutions below which one may lead to the other: self-motions are followed by steps
+of up to 0.2, and one that is smaller looks like roots."""
+
+FEW = 4
+"""Solutions that may stand alone in a valley; of a set that could not be followed any number would settle."""
+
+SETTLED = 1e-13
+"""Residual [size and rad] to which Newton's steps bring a root that stands alone."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A self-motion of a target, and the member q (n,) [rad | m] that stands for it."""
+
+    curve: Curve
+    q: Array
+
+
+def listed_once(
+    chain: Chain,
+    solver: object,
+    T: Array,
+    found: Found,
+    size: float,
+    limits: Array,
+    rest: Array,
+    near: Array | None,
+) -> tuple[Found, dict[int, list[Motion]], Index]:
+    """Solutions (s, n) of targets T (m, 4, 4), sorted, with each self-motion and each multiple root once.
+
+    limits: (n, 2) [rad | m]; rest: (n,) the wish where there is no `near` (n,). Also the self-motions of each target,
+    and the targets (k,) of which a solution is singular and neither double nor on a self-motion: others may be so near
+    to it that they were not told apart.
+    """
+    least = least_singular_values(chain, found.q, size)
+    found, least = _thinned(chain, found, least, size)
+    singular = np.flatnonzero(least < ZERO)
+    if not len(singular):
+        return found, {}, np.empty(0, dtype=np.intp)
+    q, index = found.q.copy(), found.index
+    position, angle = found.position.copy(), found.angle.copy()
+    local = classify(chain, T[index[singular]], q[singular], size)
+    # On the way to a multiple root that the target only nearly has, a solution is better left where it is.
+    there, _ = error_and_jacobian(chain, T[index[singular]], local.q, size)
+    position[singular], angle[singular], moved = _better(position[singular], angle[singular], there, size)
+    q[singular] = np.where(moved[:, None], local.q, q[singular])
+    sets = families(chain, T, q[singular], size, index[singular], local)
+    keep = np.ones(len(found), dtype=bool)
+    # Of a target with more sets than are followed the members of the others are left out; it is said that some are.
+    unfollowed = (sets.of < 0) & (local.dimension > 0) & np.isin(index[singular], np.array([*sets.open], dtype=np.intp))
+    keep[singular[unfollowed]] = False
+    motions: dict[int, list[Motion]] = {}
+    stands: list[np.intp] = []
+    lost: list[np.intp] = []
+    for i in np.unique(index[singular]):
+        mine = np.flatnonzero(index[singular] == i)
+        for number, curve in enumerate(sets.curves[i]):
+            members = singular[mine[sets.of[mine] == number]]
+            if not len(members):
+                continue
+            if any(part.ended == "lost" for part in curve.sheets or (curve,)):
+                lost.append(i)
+                if np.sum(np.maximum(position[members] / size, angle[members]) <= SETTLED) <= FEW:
+                    # No set of solutions but a valley, in which the error nearly vanishes: what settled is alone.
+                    sets.of[mine[sets.of[mine] == number]] = -1
+                    continue
+            # The most exact member comes first.
+            members = members[np.argsort(np.maximum(position[members] / size, angle[members]), kind="stable")]
+            chosen = _member(chain, solver, T[i], curve, q[members], size, limits, rest, near)
+            keep[members] = False
+            keep[members[0]] = True
+            q[members[0]] = chosen
+            stands.append(members[0])
+            motions.setdefault(int(i), []).append(Motion(curve, chosen))
+    off, _ = error_and_jacobian(chain, T[index[stands]], q[stands], size)
+    position[stands], angle[stands] = np.linalg.norm(off[:, :3], axis=1) * size, np.linalg.norm(off[:, 3:], axis=1)
+    alone = sets.of < 0
+    least[singular] = least_singular_values(chain, q[singular], size)
+    unclear = index[singular[alone & ~(local.double & moved) & (least[singular] < ZERO)]]
+    # Any solution of these targets may be a place where Newton's steps gave up on the way to a multiple root.
+    off = np.maximum(position / size, angle)
+    off[stands] = 0.0
+    keep[_stalled(index, keep, least, off)] = False
+    rows = np.setdiff1d(np.flatnonzero(keep & np.isin(index, index[singular[alone]])), stands)
+    keep[_again(chain, index, q, rows, size, least)] = False
+    keep[_on_motions(chain, index, q, rows, size, least, motions)] = False
+    crowded = _crowded(chain, index, q, singular[alone & keep[singular] & (least[singular] < ZERO)], size)
+    return (
+        Found(index, q, position, angle).pick(keep),
+        motions,
+        np.unique(np.concatenate([unclear, crowded, np.array([*lost, *sets.open], dtype=np.intp)])),
+    )
+
+
+def _thinned(chain: Chain, found: Found, least: Array, size: float) -> tuple[Found, Array]:
+    """The solutions, and their least singular values, without those beside another one that tell nothing new.
+
+    Next to a singular solution many are found that have not settled, or that lie on one self-motion.
+    """
+    off = np.maximum(found.position / size, found.angle)
+    scale = np.where(chain.revolute, 1.0, size)
+    keep = np.ones(len(found), dtype=bool)
+    rows = np.flatnonzero(least < SLOW)
+    for target in np.unique(found.index[rows]):
+        mine = rows[found.index[rows] == target]
+        mine = mine[np.argsort(off[mine], kind="stable")]
+        x = found.q[mine] / scale
+        gap = x[:, None] - x[None]
+        gap = np.max(np.abs(np.where(chain.revolute, gap - TURN * np.round(gap / TURN), gap)), axis=2)
+        vague = (off[mine] > SETTLED)[:, None] | (np.maximum(least[mine][:, None], least[mine][None]) < UNRESOLVED)
+        near = vague & (gap < BESIDE)
+        for k in range(1, len(mine)):
+            keep[mine[k]] = not np.any(near[k, :k] & keep[mine[:k]])
+    return found.pick(keep), least[keep]
+
+
+def _stalled(index: Index, keep: Flags, least: Array, off: Array) -> Index:
+    """Which rows are places where Newton's steps gave up next to a singular pose, of targets with others.
+
+    A root is settled on to rounding, be it ever so near to another one.
+    """
+    stalled = keep & (off > SETTLED) & (least < SLOW)
+    settled = np.bincount(index[keep & ~stalled], minlength=int(index.max(initial=0)) + 1) > 0
+    return np.flatnonzero(stalled & settled[index])
+
+
+def _wrist_held(chain: Chain, first: int, curve: Curve, q: Array, limits: Array, rest: Array) -> Array | None:
+    """The member (n,) of a straight wrist's self-motion with its first joint at rest and the last with what is left.
+
+    The two move as little from there as brings the last one into its limits. None where the curve is another one, or
+    this member is outside the limits.
+    """
+    last = first + 2
+    if set(curve.joints) != {first + 1, last + 1} or curve.sheets:
+        return None
+    t = curve.tangents[0]
+    sign = 1 if t[last] * t[first] < 0.0 else -1
+    held = q.copy()
+    held[last] += sign * (q[first] - rest[first])
+    held[first] = rest[first]
+    held = _into_limits(held[None], first, sign, limits)
+    return np.asarray(held[0]) if within_limits(held, chain.revolute, limits, None)[1][0] else None
+
+
+def _into_limits(q: Array, first: int, sign: int, limits: Array) -> Array:
+    """Configurations moved along the family as little as brings the wrist's last joint into its limits (2,)."""
+    last = first + 2
+    low, high = limits[last]
+    value = _half_turn(q[:, last])
+    if np.isinf(low) or np.isinf(high):
+        return q
+    fits = np.floor((high - value) / TURN) >= np.ceil((low - value) / TURN)
+    ends = _half_turn(np.stack([low - value, high - value]))
+    shift = np.where(fits, 0.0, ends[np.argmin(np.abs(ends), axis=0), np.arange(len(q))])
+    q = q.copy()
+    q[:, last] += shift
+    q[:, first] -= sign * shift
+    return q
+
+
+def _half_turn(angle: Array) -> Array:
+    """Angles in [-π, π]."""
+    return angle - TURN * np.round(angle / TURN)
+
+
+def _better(position: Array, angle: Array, there: Array, size: float) -> tuple[Array, Array, Flags]:
+    """Residuals (s,) [m, rad] of solutions or of where they could be moved, with the error `there` (s, 6), and whether
+    they are moved: to what closes as well."""
+    new_position, new_angle = np.linalg.norm(there[:, :3], axis=1) * size, np.linalg.norm(there[:, 3:], axis=1)
+    moved = np.maximum(new_position / size, new_angle) <= np.maximum(np.maximum(position / size, angle), SETTLED)
+    return np.where(moved, new_position, position), np.where(moved, new_angle, angle), moved
+
+
+def _member(
+    chain: Chain,
+    solver: object,
+    T: Array,
+    curve: Curve,
+    members: Array,
+    size: float,
+    limits: Array,
+    rest: Array,
+    near: Array | None,
+) -> Array:
+    """The member (n,) of a set that stands for it."""
+    anywhere = np.tile([-np.inf, np.inf], (chain.n, 1))
+    if near is not None:
+        chosen = nearest_on(curve, chain, T, near, limits, size)
+    else:
+        first = solver.first if isinstance(solver, SphericalTriple) else None
+        chosen = None if first is None else _wrist_held(chain, first, curve, members[0], limits, rest)
+        if chosen is None or not _closes(chain, T, chosen, size):
+            chosen = member_near(curve, chain, T, rest, limits, size)
+    if chosen is None:
+        chosen = member_near(curve, chain, T, rest if near is None else near, anywhere, size)
+    # Of a set that the target only nearly has, what was found is nearer to it than what was followed.
+    return members[0] if chosen is None or not _closes(chain, T, chosen, size) else chosen
+
+
+def _closes(chain: Chain, T: Array, q: Array, size: float) -> bool:
+    """Whether a configuration (n,) reaches T (4, 4) as nearly as a solution must."""
+    error = error_and_jacobian(chain, T[None], q[None], size)[0][0]
+    return float(max(np.linalg.norm(error[:3]), np.linalg.norm(error[3:]))) <= CLOSES
+
+
+def _again(chain: Chain, index: Index, q: Array, rows: Index, size: float, least: Array) -> Index:
+    """Which of some rows are the same multiple root as another one of their target."""
+    scale = np.where(chain.revolute, 1.0, size)
+    again = []
+    for target in np.unique(index[rows]):
+        mine = rows[index[rows] == target]
+        mine = mine[np.argsort(least[mine], kind="stable")]
+        for k in range(1, len(mine)):
+            gap = (q[mine[:k]] - q[mine[k]]) / scale
+            gap = np.where(chain.revolute, gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi)), gap)
+            multiple = np.maximum(least[mine[:k]], least[mine[k]]) < UNRESOLVED
+            if np.any(multiple & (np.max(np.abs(gap), axis=1) < NEIGHBOURS)):
+                again.append(mine[k])
+    return np.array(again, dtype=np.intp)
+
+
+def _crowded(chain: Chain, index: Index, q: Array, rows: Index, size: float) -> Index:
+    """The targets of which some singular solutions are near to each other: they may be on one self-motion, which is too
+    small to be followed."""
+    scale = np.where(chain.revolute, 1.0, size)
+    found = []
+    for target in np.unique(index[rows]):
+        x = q[rows[index[rows] == target]] / scale
+        gap = x[:, None] - x[None]
+        gap = np.max(np.abs(np.where(chain.revolute, gap - TURN * np.round(gap / TURN), gap)), axis=2)
+        if np.any(gap[np.triu_indices(len(x), 1)] < CROWDED):
+            found.append(target)
+    return np.array(found, dtype=np.intp)
+
+
+def _on_motions(
+    chain: Chain, index: Index, q: Array, rows: Index, size: float, least: Array, motions: dict[int, list[Motion]]
+) -> Index:
+    """Which of some rows, none of which stands for one, are multiple roots beside a self-motion of their target."""
+    scale = np.where(chain.revolute, 1.0, size)
+    beside = []
+    for row in rows[least[rows] < UNRESOLVED]:
+        for motion in motions.get(int(index[row]), []):
+            gap = (motion.curve.q - q[row]) / scale
+            gap = np.where(chain.revolute, gap - TURN * np.round(gap / TURN), gap)
+            if _distance(gap) < NEIGHBOURS:
+                beside.append(row)
+                break
+    return np.array(beside, dtype=np.intp)
+
+
+def _distance(points: Array) -> float:
+    """How far the straight pieces between points (k, n) are from zero, by the greatest coordinate."""
+    if len(points) < 2:
+        return float(np.min(np.max(np.abs(points), axis=1)))
+    chord = np.diff(points, axis=0)
+    chord = chord - TURN * np.round(chord / TURN)
+    length = np.maximum(np.einsum("ij,ij->i", chord, chord), 1e-300)
+    along = np.clip(-np.einsum("ij,ij->i", points[:-1], chord) / length, 0.0, 1.0)
+    return float(np.min(np.max(np.abs(points[:-1] + along[:, None] * chord), axis=1)))

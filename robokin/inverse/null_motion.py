@@ -1,0 +1,269 @@
+"""Near one configuration: which joint motions keep the pose, to first, to second order and indeed.
+
+Statement. At a configuration x that reaches a pose, find the directions of the curves of configurations through x
+that reach it too, and correct a configuration near such a curve.
+Derivation. With the twists S_j (linear, angular) of the joints in the axes of the base, taken at the tool, the pose
+along x + v t + ½ a t² moves by J v in the first order and by J a + P(v), P(v) = Σ_{i<j} [S_i, S_j] v_i v_j, in the
+second, as joint i moves all joints after it: ∂S_j/∂q_i = [S_i, S_j] for i < j, and
+
+    [(v, w), (v', w')] = (w × v' + v × w', w × w').
+
+So v is a direction only if J v = 0 and U P(v) = 0 for all rows u of U with u J = 0: a cone in the null space. One null
+vector is left at nearly every point of a curve. Where two curves cross there are two, and the cone is two lines;
+where a wrist and an elbow are both singular along a curve the cone is one line counted twice; where it is the whole
+of the null space the solutions form a surface. Whether a curve follows a direction is then tried: a step along it,
+brought back by Newton steps in the plane through the step's end at right angles to it, must close.
+Degenerate case. A fold (two solutions that merge) has a null vector, and U P(v) is not zero. Contacts of higher order
+look like curves to second order; the step along them does not close.
+Reference: E. L. Allgower, K. Georg, "Introduction to Numerical Continuation Methods", SIAM 2003, chapters 2, 8;
+A. Müller, "Higher-order analysis of kinematic singularities of lower pair linkages and serial manipulators",
+J. Mechanisms and Robotics 10(1), 2018, for the tangent cone.
+
+Here x are joint values [rad | size] and lengths are in the arm's size.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse import few_rows
+from robokin.inverse.nearest import few_joints
+from robokin.kinematics.chain import Chain
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+ZERO = 1e-5
+"""Singular values of the Jacobian (lengths in sizes) below this are zero. Newton's method stops some 1e-8 to 1e-6
+from a double root, and leaves a singular value of that size there; away from special points they are above 1e-3."""
+
+SETTLED = 1e-13
+"""Error [size and rad] at which Newton steps end: some hundred times the rounding of the pose."""
+
+CLOSES = 5e-10
+"""The greatest part of the error [size and rad] up to which a configuration reaches the pose: its length is then below
+1e-9, which a solution may have. A pose that was printed and read again is off by as much."""
+
+STEPS = 8
+"""Newton steps of a correction at most: three do on a curve, as the error is squared each time."""
+
+SLOW_STEPS = 40
+"""The same where the solutions count twice along a curve: each step halves the error, from 1e-3 to below 1e-10."""
+
+LONGEST = 0.3
+"""The longest Newton step of a joint [rad | size]: farther off the tangent says nothing of the curve."""
+
+PROBES = (0.05, 0.01)
+"""Lengths of the steps [rad | size] that try whether a curve follows a direction. After 0.01 the second order of a
+mere fold still leaves an error of 1e-5; it is for curves that bend at once."""
+
+PROBE_CORRECTION = 0.5
+"""A step that is corrected by more, as a part of itself, has not followed its direction."""
+
+IDENTICAL = 1e-6
+"""P(v) [size and rad per rad²] below this on the whole null space is zero: ten times what a configuration does to it
+that is off by 1e-7."""
+
+CONE = 0.05
+"""P(v), as a part of its greatest value on the null space, below which a minimum of it is worth a trial."""
+
+DRAWN = 48
+"""Random null vectors from which zeros of P(v) are sought where the null space has three dimensions or more."""
+
+
+def scale_of(chain: Chain, size: float) -> Array:
+    """(n,) what joint values q are divided by [1 | m] to be x."""
+    return np.where(chain.revolute, 1.0, size)
+
+
+def errors(chain: Chain, T: Array, x: Array, size: float) -> tuple[Array, Array]:
+    """The error (s, 6) against poses T: (s, 4, 4) and the Jacobian (s, 6, n) at x (s, n) [rad | size]."""
+    return few_rows.errors(chain, T, x * scale_of(chain, size), size)
+
+
+def least_squares(A: Array, b: Array, zero: float = ZERO) -> Array:
+    """(s, n) the shortest solution of A (s, m, n) dx = b (s, m), singular values up to `zero` left out."""
+    U, values, Vt = np.linalg.svd(A, full_matrices=False)
+    inverse = np.where(values > zero, 1.0 / np.maximum(values, zero), 0.0)
+    along = (b[:, None, :] @ U)[:, 0] * inverse
+    return np.asarray((along[:, None, :] @ Vt)[:, 0])
+
+
+def corrected(
+    chain: Chain,
+    T: Array,
+    x: Array,
+    size: float,
+    normals: Array | None = None,
+    steps: int = STEPS,
+    settled: float = SETTLED,
+    zero: float = ZERO,
+) -> tuple[Array, Array, Array]:
+    """Newton steps from x (s, n) onto the configurations that reach T: (s, 4, 4).
+
+    normals: (s, k, n), directions that x keeps its place along; settled: the error at which steps end; zero: what a
+    singular value must exceed to count. Returns x (s, n) [rad | size], the greatest part of
+    the error left (s,) and the Jacobian there (s, 6, n).
+    """
+    e, J = errors(chain, T, x, size)
+    off = np.max(np.abs(e), axis=1)
+    factor = np.ones(len(x))
+    for _ in range(steps):
+        rows = np.flatnonzero(off > settled)
+        if not len(rows):
+            break
+        A, b = J[rows], e[rows]
+        if normals is not None:
+            A = np.concatenate([A, normals[rows]], axis=1)
+            b = np.concatenate([b, np.zeros((len(rows), normals.shape[1]))], axis=1)
+        dx = least_squares(A, b, zero)
+        dx *= (LONGEST / np.maximum(np.max(np.abs(dx), axis=1), LONGEST))[:, None]
+        new = x[rows] + dx * factor[rows, None]
+        e_new, J_new = errors(chain, T[rows], new, size)
+        off_new = np.max(np.abs(e_new), axis=1)
+        # At a double root each step halves the distance and leaves a fourth of the error: twice the step goes there.
+        factor[rows] = np.where((off_new > 0.2 * off[rows]) & (off_new < 0.3 * off[rows]), 2.0, 1.0)
+        # Once close, a step that gains nothing is rounding; it would only wander.
+        better = (off_new < off[rows]) | (off[rows] > CLOSES)
+        rows, new = rows[better], new[better]
+        if not len(rows):
+            break
+        x = np.array(x)
+        x[rows], e[rows], J[rows], off[rows] = new, e_new[better], J_new[better], off_new[better]
+    return x, off, J
+
+
+def brackets(J: Array) -> Array:
+    """(..., n, n, 6) the twists [S_i, S_j] for i < j, zero elsewhere, of the columns of J (..., 6, n)."""
+    S = np.swapaxes(J, -1, -2)
+    v, w = S[..., :3], S[..., 3:]
+    w_i, w_j = w[..., :, None, :], w[..., None, :, :]
+    linear = np.cross(w_i, v[..., None, :, :]) + np.cross(v[..., :, None, :], w_j)
+    whole = np.concatenate([linear, np.cross(w_i, w_j)], axis=-1)
+    return np.asarray(whole * np.triu(np.ones(whole.shape[-3:-1]), 1)[..., None])
+
+
+def second_order(J: Array, null: Array, left: Array) -> Array:
+    """(m, d, d) the forms v ↦ u P(v) on the null space, for its basis (d, n) and left null vectors (m, 6)."""
+    P = np.einsum("ai,bj,ijk->kab", null, null, brackets(J))
+    P = np.einsum("mk,kab->mab", left, P)
+    return np.asarray(0.5 * (P + np.swapaxes(P, 1, 2)))
+
+
+def null_spaces(J: Array) -> tuple[Array, Array]:
+    """A basis of the null space (d, n) of one Jacobian (6, n) and of its left null space (m, 6)."""
+    U, values, Vt = np.linalg.svd(J)
+    rank = int(np.sum(values > ZERO))
+    return np.asarray(Vt[rank:]), np.asarray(U[:, rank:].T)
+
+
+def cone(J: Array) -> tuple[Array, bool]:
+    """Directions (k, n) of length 1 that curves may have, to second order, and whether all of the null space does."""
+    null, left = null_spaces(J)
+    d = len(null)
+    if d <= 1:
+        return null, True
+    Q = second_order(J, null, left)
+    if not len(left) or float(np.max(np.abs(Q))) <= IDENTICAL:
+        ways = few_joints(null)
+        return ways / np.linalg.norm(ways, axis=1, keepdims=True), True
+    weights = _zeros_on_circle(Q) if d == 2 else _zeros_on_sphere(Q)
+    ways = weights @ null
+    # Two joints with one axis are known exactly, also where their direction counts twice.
+    exact = coaxial_pairs(J)
+    new = np.all(np.abs(ways @ exact.T) < 0.999, axis=1)
+    return np.concatenate([exact, ways[new]]), False
+
+
+def _norms(Q: Array, v: Array) -> Array:
+    """(k,) the length of the forms' values at v (k, d)."""
+    return np.asarray(np.linalg.norm(np.einsum("mab,ka,kb->km", Q, v, v), axis=1))
+
+
+def _zeros_on_circle(Q: Array) -> Array:
+    """(k, 2) unit vectors at which the forms (m, 2, 2) are least and nearly zero, one of each pair ±v."""
+    angle = np.arange(360) * (np.pi / 360)
+    value = _norms(Q, np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    lower = (value <= np.roll(value, 1)) & (value < np.roll(value, -1))
+    found = []
+    for i in np.flatnonzero(lower & (value <= CONE * np.max(value))):
+        centre, width = angle[i], np.pi / 360
+        while width > 1e-12:
+            fine = centre + np.linspace(-width, width, 11)
+            centre = fine[np.argmin(_norms(Q, np.stack([np.cos(fine), np.sin(fine)], axis=1)))]
+            width /= 4.0
+        found.append([np.cos(centre), np.sin(centre)])
+    return np.array(found).reshape(-1, 2)
+
+
+def _zeros_on_sphere(Q: Array) -> Array:
+    """(k, d) unit vectors at which the forms (m, d, d) are zero: some of infinitely many, for d of three or more."""
+    d = Q.shape[1]
+    v = np.concatenate([np.eye(d), np.random.default_rng(7).normal(size=(DRAWN, d))])
+    v /= np.linalg.norm(v, axis=1, keepdims=True)
+    for _ in range(30):
+        slope = np.einsum("mab,kb->kma", Q, v)
+        value = np.einsum("kma,ka->km", slope, v)
+        # At right angles to v: along it the forms only shrink.
+        A = np.concatenate([2.0 * slope, v[:, None]], axis=1)
+        v = v - least_squares(A, np.concatenate([value, np.zeros((len(v), 1))], axis=1))
+        v /= np.linalg.norm(v, axis=1, keepdims=True)
+    v = v[_norms(Q, v) <= IDENTICAL + 1e-3 * float(np.max(np.abs(Q)))]
+    kept: list[Array] = []
+    for row in v:
+        if all(abs(float(row @ other)) < 0.999 for other in kept):
+            kept.append(row)
+    return np.array(kept).reshape(-1, d)
+
+
+def follows(chain: Chain, T: Array, x: Array, ways: Array, size: float) -> Flags:
+    """(s,) whether a step from x (s, n) along ways (s, n) or against them stays with T (s, 4, 4)."""
+    out = np.zeros(len(x), dtype=bool)
+    for length in PROBES:
+        rows = np.flatnonzero(~out)
+        if not len(rows):
+            break
+        signed = np.concatenate([ways[rows], -ways[rows]])
+        start = np.tile(x[rows], (2, 1)) + length * signed
+        end, off, _ = corrected(chain, np.tile(T[rows], (2, 1, 1)), start, size, signed[:, None], SLOW_STEPS)
+        moved = np.linalg.norm(end - start, axis=1)
+        on = (off <= CLOSES) & (moved <= PROBE_CORRECTION * length)
+        out[rows] = np.any(on.reshape(2, -1), axis=0)
+    return out
+
+
+def coaxial_pairs(J: Array) -> Array:
+    """(k, n) the directions of length 1 in which two joints with one axis trade their motion, for J (6, n)."""
+    n = J.shape[1]
+    pairs = []
+    for i in range(n):
+        for j in range(i + 1, n):
+            way = np.zeros(n)
+            way[[i, j]] = 1.0, -1.0 if float(J[:, i] @ J[:, j]) > 0.0 else 1.0
+            if float(np.max(np.abs(J @ way))) <= COAXIAL:
+                pairs.append(way / np.sqrt(2.0))
+    return np.array(pairs).reshape(-1, n)
+
+
+def coaxial_line(J: Array, way: Array) -> Array | None:
+    """The direction (n,) along which only joints with one axis trade their motion, if `way` (n,) is one; else None.
+
+    Joints i < j with the same axis may turn against each other by any angle: what is between them turns about that
+    axis, which joint j keeps. So the line x + s way reaches the pose for all s, exactly.
+    """
+    moving = np.flatnonzero(np.abs(way) > 1e-7)
+    if len(moving) != 2:
+        return None
+    a, b = J[:, moving[0]], J[:, moving[1]]
+    sign = 1.0 if float(a @ b) > 0.0 else -1.0
+    if float(np.max(np.abs(a - sign * b))) > COAXIAL:
+        return None
+    line = np.zeros(len(way))
+    line[moving] = np.array([1.0, -sign]) * np.sign(way[moving[0]])
+    return line
+
+
+COAXIAL = 1e-8
+"""Two axes whose twists differ by less [size and rad] are one: over a turn they leave an error of a few of it, which
+the check of each point refuses where it matters."""

@@ -1,0 +1,284 @@
+"""A second look at doubtful targets: solutions sought in several other ways, and what then may be said of them.
+
+Statement. For targets at which an arm is singular, or at which its solver may have lost solutions (`window`), find all.
+Ways, each from the solver's own algebra or none of it:
+- Next door. The solver is asked for poses a trifle away in several directions, where it is regular, and what it finds
+  is brought to the target by Newton's steps.
+- Other splits of the elimination and links that are wrong by a trifle (`elimination`).
+- For an arm of fewer than six joints other added joints: turns about skew axes, with which the loop is that of a
+  general arm (`skew`).
+- A homotopy from complex targets, which accounts for all N solutions of the loop (`homotopy`).
+What is said. If N distinct regular complex solutions are shown there is no other: counted. If all paths of the homotopy
+ended, from two independent starts alike, they are accounted for. Else there may be more.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.analysis import Analysis, General
+from robokin.inverse.claims import ACCOUNTED, COUNTED, NOTHING, Claims
+from robokin.inverse.complex_newton import regular
+from robokin.inverse.elimination import REAL, count_solutions, rescue_candidates
+from robokin.inverse.homotopy import Homotopy
+from robokin.inverse.loop import Candidates, ComplexCandidates, Loop
+from robokin.inverse.members import listed_once
+from robokin.inverse.monodromy import Known
+from robokin.inverse.newton import closing_at, refine
+from robokin.inverse.numeric import descend, error_and_jacobian
+from robokin.inverse.skew import Skew
+from robokin.inverse.verify import CLOSES, Found, distinct, merged
+from robokin.kinematics.chain import Chain
+from robokin.spatial import rotation_from_rpy, transform
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Flags = NDArray[np.bool_]
+
+TWIST = 1e-3
+"""How far away [size and rad] the solver is asked for poses next door: far enough that roots are told apart, near
+enough for Newton's steps."""
+
+TWISTS = 6
+"""In how many directions."""
+
+DRIFT = 0.05
+"""An added joint that is farther from zero [rad | size] at a pose next door is not about to stand still."""
+
+STEPS = 15
+"""Newton steps from next door."""
+
+FINE = 6
+"""Steps by singular values thereafter: next to singular poses normal equations lose half of the digits."""
+
+LEAST = 1e-9
+"""Singular values below this part of the greatest are left out of such a step: what the error has of their direction
+is rounding."""
+
+NEARLY = 1e-5
+"""What closes no better [size and rad] after Newton's steps leads nowhere."""
+
+STANDS = 1e-2
+"""An added joint nearer to zero [rad] in a solution of the loop may stand still, but for a double root's digits."""
+
+SLIDES = "; with sliding joints there may be more at such a pose"
+"""What is added to an account that does not end in regular solutions alone."""
+
+POSES = 200
+"""Random poses among which two are looked for at which all complex solutions are known."""
+
+
+def look_again(
+    analysis: Analysis, T: Array, found: Found, rest: Array, limits: Array, near: Array | None
+) -> tuple[Found, Claims]:
+    """All solutions q: (s, window) of targets T: (m, 4, 4) of which some are known, and what may be said of them.
+
+    rest: (window,) where a joint that is free is put; limits: (window, 2); near: (window,) the wish for self-motions.
+    """
+    assert analysis.six is not None
+    other = _others_of(analysis)
+    parts = [next_door(analysis, T)]
+    basis = np.zeros(len(T), dtype=np.int8)
+    words: dict[int, str] = {}
+    for skew in other.skews:
+        index, q, whole = skewed(skew, T, analysis.own.n)
+        parts.append((index, q))
+        basis[whole] = COUNTED
+    open_ = np.flatnonzero(basis == NOTHING)
+    if len(open_):
+        ends, closed, words = followed(other, T[open_])
+        still = (
+            np.max(np.abs(half_turns(ends[1], other.chain.revolute)[:, analysis.own.n :]), axis=1, initial=0.0) < STANDS
+        )
+        parts.append((open_[ends[0][still]], ends[1][still, : analysis.own.n]))
+        basis[open_[closed]] = ACCOUNTED
+        words = {int(open_[i]): text for i, text in words.items()}
+    index = np.concatenate([part[0] for part in parts])
+    q = np.concatenate([part[1] for part in parts])
+    found = merged(found, closing_at_last(analysis.own, T, index, q, analysis.size))
+    closing = np.bincount(found.index, minlength=len(T))
+    found = distinct(found, analysis.own.revolute, analysis.size)
+    found, motions, unclear = listed_once(analysis.own, analysis.solver, T, found, analysis.size, limits, rest, near)
+    found = distinct(found, analysis.own.revolute, analysis.size)
+    for i in unclear.tolist():
+        basis[i], words[i] = (
+            NOTHING,
+            "next to a singular pose: other solutions may be too near to one listed to be told apart",
+        )
+    for i, sets in motions.items():
+        if any(motion.curve.sheets for motion in sets):
+            basis[i], words[i] = NOTHING, "a self-motion of more than one dimension: only curves on it were followed"
+        elif not analysis.own.revolute.all():
+            # Of slides a self-motion may have pieces that no path and no neighbouring pose leads to.
+            basis[i], words[i] = NOTHING, "self-motions with sliding joints: there may be more of them"
+    real = np.bincount(found.index, minlength=len(T))
+    for i in np.flatnonzero(basis == COUNTED):
+        number = other.skews[0].number
+        words[int(i)] = (
+            f"{number} of {number} complex solutions found of the arm with skew axes added, "
+            f"{real[i]} real with these standing still"
+        )
+    claims = Claims(basis, analysis.number, real, words, motions)
+    claims.candidates, claims.duplicates = np.bincount(index, minlength=len(T)), closing - real
+    return found, claims
+
+
+class _Others(NamedTuple):
+    """What else can solve an arm: loops with skew axes, for fewer than six joints; a homotopy, and its loop's chain."""
+
+    skews: tuple[Skew, ...]
+    homotopy: Homotopy
+    loop: Loop
+    chain: Chain
+
+
+_kept: WeakKeyDictionary[Analysis, _Others] = WeakKeyDictionary()
+
+
+def _others_of(analysis: Analysis) -> _Others:
+    """The other ways to solve an arm, made when they are first asked for."""
+    if analysis not in _kept:
+        assert analysis.six is not None
+        assert analysis.loop is not None
+        if analysis.six.virtual:
+            skews = tuple(Skew(analysis.own, seed) for seed in (40, 41))
+            first = skews[0]
+            homotopy = Homotopy(first.loop, partial(known_of_skew, first))
+            _kept[analysis] = _Others(skews, homotopy, first.loop, first.six.chain)
+        else:
+            # Nothing kept here may hold on to the analysis, which it is kept for.
+            homotopy = Homotopy(
+                analysis.loop, partial(known_solutions, analysis.loop, analysis.solver, analysis.number)
+            )
+            _kept[analysis] = _Others((), homotopy, analysis.loop, analysis.six.chain)
+    return _kept[analysis]
+
+
+def next_door(analysis: Analysis, T: Array) -> tuple[Index, Array]:
+    """Configurations (s, window) near solutions of T (m, 4, 4), from the solutions at poses a trifle away."""
+    six, loop, solver = analysis.six, analysis.loop, analysis.solver
+    assert six is not None
+    assert loop is not None
+    rng = np.random.default_rng(3)
+    away = transform(rotation_from_rpy(TWIST * rng.normal(size=(TWISTS, 3))), TWIST * rng.normal(size=(TWISTS, 3)))
+    closing = loop.closing(T)
+    many = (away[:, None] @ closing[None]).reshape(-1, 4, 4)
+    candidates = solver.candidates(many)
+    parts = [Candidates(candidates.index % len(T), candidates.values)]
+    if isinstance(solver, General):
+        parts.append(rescue_candidates(loop, solver.splits, closing))
+    index = np.concatenate([part.index for part in parts])
+    values = np.concatenate([part.values for part in parts])
+    scale = np.where(six.chain.revolute, 1.0, loop.size)
+    own = six.chain.n - six.virtual
+    if six.virtual:
+        near = np.max(np.abs(half_turns(values[:, own:], six.chain.revolute[own:])), axis=1) < DRIFT
+        index, values = index[near], values[near]
+    else:
+        values, position, angle = refine(loop, closing, index, values, STEPS)
+        near = (position < NEARLY) & (angle < NEARLY)
+        index, values = index[near], values[near]
+    return index, (values * scale - six.chain.offsets)[:, :own]
+
+
+def skewed(skew: Skew, T: Array, own: int) -> tuple[Index, Array, Flags]:
+    """Configurations (s, own) at which the added axes nearly stand still, and for which targets none is missing."""
+    index, q, whole = skew.solutions(T)
+    near = np.max(np.abs(half_turns(q[:, own:], np.ones(6 - own, dtype=bool))), axis=1) < STANDS
+    return index[near], q[near, :own], whole
+
+
+def followed(other: _Others, T: Array) -> tuple[tuple[Index, Array], Flags, dict[int, str]]:
+    """Configurations (s, 6) [rad | m] in which a homotopy's paths end; for which targets all ended; in words."""
+    if other.homotopy.count is None:
+        nowhere = np.empty(0, dtype=np.intp), np.empty((0, 6))
+        words = "searched for in several ways; how many complex solutions the arm has could not be told"
+        return nowhere, np.zeros(len(T), dtype=bool), dict.fromkeys(range(len(T)), words)
+    account = other.homotopy.account(other.loop.closing(T))
+    index = np.concatenate([account.index, account.singular_index])
+    values = np.concatenate([account.values, account.singular_values])
+    q = values * np.where(other.chain.revolute, 1.0, other.loop.size) - other.chain.offsets
+    closed, said = account.closed, {i: account.words(i) for i in range(len(T))}
+    if not other.chain.revolute.all():
+        # Where slides are singular a self-motion may be one that no path ends on.
+        closed = closed & (account.regular == account.count)
+        said |= {int(i): said[int(i)] + SLIDES for i in np.flatnonzero(account.closed & ~closed)}
+    return (index, q), closed, said
+
+
+def known_solutions(loop: Loop, solver: Any, number: int | None) -> list[Known]:
+    """All solutions of an arm's loop at random poses, as far as its own solver gives them, which has `number` roots."""
+    spans = np.where(loop.revolute, np.pi, 1.0)
+    closing = closing_at(loop, np.random.default_rng(8).uniform(-spans, spans, (POSES, 6)))
+    if isinstance(solver, General):
+        return _known_by_elimination(loop, solver.first.all_candidates(closing[:8]), closing, number)
+    candidates = solver.candidates(closing)
+    values, position, angle = refine(loop, closing, candidates.index, candidates.values, 4)
+    whole = np.flatnonzero(np.bincount(candidates.index[(position + angle) < 1e-12], minlength=POSES) == number)
+    found = []
+    for i in whole:
+        mine = values[candidates.index == i].astype(np.complex128)
+        if regular(loop, mine, np.zeros(len(mine)), 1e-3).all():
+            found.append(Known(closing[i], mine))
+    return found
+
+
+def known_of_skew(skew: Skew) -> list[Known]:
+    """The same of a loop with skew axes."""
+    spans = np.where(skew.loop.revolute, np.pi, 1.0)
+    closing = closing_at(skew.loop, np.random.default_rng(8).uniform(-spans, spans, (8, 6)))
+    return _known_by_elimination(skew.loop, skew.solver.all_candidates(closing), closing, skew.number)
+
+
+def _known_by_elimination(
+    loop: Loop, candidates: tuple[Candidates, ComplexCandidates], closing: Array, number: int | None
+) -> list[Known]:
+    """The targets closing (m, 4, 4) at which an elimination found all."""
+    m = 1 + int(max((part.index.max(initial=0) for part in candidates), default=0))
+    counted = count_solutions(loop, closing[:m], [(part.index, part.values) for part in candidates], 3)
+    found = []
+    for i in np.flatnonzero(counted.number == number):
+        mine = counted.values[counted.kept & (counted.target == i)]
+        paired = mine[np.abs(mine.imag).max(axis=1) > REAL]
+        found.append(Known(closing[i], np.concatenate([mine, paired.conj()])))
+    return found
+
+
+def half_turns(values: Array, turning: Flags) -> Array:
+    """Joint values (s, k) with angles in [-π, π]."""
+    return np.asarray(np.where(turning, values - 2.0 * np.pi * np.round(values / (2.0 * np.pi)), values))
+
+
+def closing_at_last(chain: Chain, T: Array, index: Index, q: Array, size: float) -> Found:
+    """Those configurations (s, n) for the targets index (s,) that Newton's steps bring to close."""
+    target = T[index]
+    q, error = descend(chain, target, q, size, steps=STEPS)
+    off = np.max(np.abs(error), axis=1)
+    near = off < NEARLY
+    index, q, error = index[near], q[near], error[near]
+    scale = np.where(chain.revolute, 1.0, size)
+    for _ in range(FINE):
+        open_ = np.flatnonzero(np.max(np.abs(error), axis=1) > 1e-14)
+        if not len(open_):
+            break
+        here, J = error_and_jacobian(chain, T[index[open_]], q[open_], size)
+        U, S, Vt = np.linalg.svd(J, full_matrices=False)
+        part = np.einsum("sij,si->sj", U, here)
+        part = np.where(LEAST * S[:, :1] < S, part / np.where(S > 0.0, S, 1.0), 0.0)
+        step = np.einsum("sj,sjk->sk", part, Vt)
+        step *= (0.1 / np.maximum(np.max(np.abs(step), axis=1), 0.1))[:, None]
+        ahead = q[open_] + step * scale
+        there, _ = error_and_jacobian(chain, T[index[open_]], ahead, size)
+        better = np.max(np.abs(there), axis=1) < np.max(np.abs(here), axis=1)
+        q[open_[better]], error[open_[better]] = ahead[better], there[better]
+        error[open_[~better]] = here[~better]
+        if not better.any():
+            break
+    position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
+    closes = (position <= CLOSES) & (angle <= CLOSES)
+    return Found(index, q, position * size, angle).pick(closes)

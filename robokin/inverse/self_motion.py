@@ -1,0 +1,220 @@
+"""Self-motions: which configurations stand alone, and the sets of configurations that the others are on.
+
+Statement. Given configurations that reach a pose, tell which stand alone, which count twice, and follow the sets that
+the others are on.
+Derivation. With a Jacobian of full rank the solutions are a manifold of as many dimensions as there are joints more
+than six. Otherwise the directions of the tangent cone are tried (`null_motion`), and a set is followed along those
+that close (`curve_tracing`). What does not is a root on its own, mostly a double one (`fold`).
+Degenerate case. Of a set of more dimensions only the curves are followed on which one joint of a basis moves and the
+others of the basis are locked.
+
+Here x are joint values [rad | size] and lengths are in the arm's size.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.curve_tracing import Curve, leads_away, trace_many
+from robokin.inverse.fold import SLIGHT_BEND, to_fold, to_multiple_root
+from robokin.inverse.nearest import few_joints
+from robokin.inverse.null_motion import (
+    CLOSES,
+    SLOW_STEPS,
+    ZERO,
+    coaxial_line,
+    cone,
+    corrected,
+    errors,
+    follows,
+    null_spaces,
+    scale_of,
+)
+from robokin.kinematics.chain import Chain
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Index = NDArray[np.intp]
+
+
+class Local(NamedTuple):
+    """What configurations near solutions are.
+
+    q: (s, n) [rad | m] brought to the pose; null: (s,) dimension of the null space; dimension: (s,) that of the set
+    of solutions there: 0 where the solution stands alone; double: (s,) whether it is a root of two or more solutions
+    that merge, and known to full digits; ways: for each the directions (k, n) in which curves leave it (in x, of
+    length 1). What stands alone with null > 0 and is not double is near a fold that the target is not at, or a root
+    of an order that is not known.
+    """
+
+    q: Array
+    null: NDArray[np.intp]
+    dimension: NDArray[np.intp]
+    double: Flags
+    ways: tuple[Array, ...]
+
+
+def classify(chain: Chain, T: Array, q: Array, size: float) -> Local:
+    """What q (s, n) [rad | m], which nearly reach T (s, 4, 4) or (4, 4), are: alone, double, or on a set."""
+    scale = scale_of(chain, size)
+    T = np.broadcast_to(T, (len(q), 4, 4))
+    x, off, J = corrected(chain, T, q / scale, size)
+    null = chain.n - np.sum(np.linalg.svd(J, compute_uv=False) > ZERO, axis=1)
+    exact = np.where(off[:, None] <= CLOSES, x * scale, q)
+    double = np.zeros(len(x), dtype=bool)
+    # With a Jacobian of full rank the solutions are a manifold, and at a fold no curve leaves: neither is tried.
+    manifold = (chain.n - null == 6) & (null > 0)
+    trying = (null > 0) & ~manifold
+    single = np.flatnonzero(trying & (null == 1))
+    folds = to_fold(chain, T[single], exact[single], size)
+    double[single] = folds.double
+    exact[double] = folds.q[folds.double]
+    trying[single[np.isfinite(folds.mu)]] = False
+    ways = [np.empty((0, chain.n))] * len(x)
+    dimension = np.where(manifold, null, 0)
+    for i in np.flatnonzero(manifold):
+        ways[i] = cone(J[i])[0]
+    _follow(chain, T, x, J, np.flatnonzero(trying), size, ways, dimension)
+    _sharpen(chain, T, np.where(dimension == 0, null, 0), size, exact, double)
+    return Local(exact, null, dimension, double, tuple(ways))
+
+
+def _follow(
+    chain: Chain, T: Array, x: Array, J: Array, rows: Index, size: float, ways: list[Array], dimension: Index
+) -> None:
+    """Fill in the directions and dimensions of the sets that leave x (s, n), for the rows (k,) that may be on some."""
+    if not len(rows):
+        return
+    cones = [cone(J[i]) for i in rows]
+    place = np.repeat(np.arange(len(rows)), [len(found) for found, _ in cones])
+    tried, index = np.concatenate([found for found, _ in cones]), rows[place]
+    on = follows(chain, T[index], x[index], tried, size)
+    # A straight line is proven, and on a surface a single direction is no curve's.
+    proven = np.array([coaxial_line(J[i], way) is not None for i, way in zip(index, tried, strict=True)], dtype=bool)
+    surface = np.array([flat and found.shape[0] > 1 for found, flat in cones], dtype=bool)[place]
+    doubtful = np.flatnonzero(on & ~proven & ~surface)
+    if len(doubtful):
+        on[doubtful] = leads_away(chain, T[index[doubtful]], x[index[doubtful]], tried[doubtful], size)
+    for k, i in enumerate(rows.tolist()):
+        found = tried[on & (place == k)]
+        if len(found):
+            dimension[i] = _dimension(chain, T[i], x[i], found, cones[k][1], size)
+        if dimension[i] > 1:
+            found = _that_lead_away(chain, T[i], x[i], found, int(dimension[i]), size)
+            dimension[i] = min(len(found), dimension[i])
+        ways[i] = found
+
+
+def _sharpen(chain: Chain, T: Array, null: Index, size: float, exact: Array, double: Flags) -> None:
+    """Bring the multiple roots among `exact` (s, n) to full digits; null: (s,) 0 for what is none."""
+    # Known not to be on curves, also those that bend less may be folds: an elbow beside a nearly singular wrist.
+    slight = np.flatnonzero((null == 1) & ~double)
+    folds = to_fold(chain, T[slight], exact[slight], size, SLIGHT_BEND)
+    double[slight], exact[slight[folds.double]] = folds.double, folds.q[folds.double]
+    for i in np.flatnonzero((null > 0) & ~double):
+        root = to_multiple_root(chain, T[i], exact[i], size, int(null[i]))
+        if root is not None:
+            double[i], exact[i] = True, root
+
+
+def _dimension(chain: Chain, T: Array, x: Array, ways: Array, flat: bool, size: float) -> int:
+    """The dimension of the set that leaves x (n,) along ways (k, n): that of its null space a little way off.
+
+    At a generic point of a surface the null space is its tangent plane; along a curve that counts twice the null
+    space has more dimensions, of which the cone has only one.
+    """
+    if len(ways) == 1 and flat:
+        return 1
+    mixed = np.linalg.svd(ways, full_matrices=False)[2][: np.linalg.matrix_rank(ways, tol=1e-6)]
+    if flat and len(mixed) > 1:
+        drawn = np.random.default_rng(3).normal(size=(2, len(mixed))) @ mixed
+        drawn /= np.linalg.norm(drawn, axis=1, keepdims=True)
+        many = np.broadcast_to(T, (2, 4, 4))
+        if follows(chain, many, np.tile(x, (2, 1)), drawn, size).all():
+            return len(mixed)
+    start = x + 0.03 * ways
+    many = np.broadcast_to(T, (len(ways), 4, 4))
+    y, off, J = corrected(chain, many, start, size, ways[:, None], SLOW_STEPS)
+    found = 1
+    for i in np.flatnonzero(off <= CLOSES):
+        null, _ = null_spaces(J[i])
+        if len(null) > 1:
+            further, whole = cone(J[i])
+            on = follows(
+                chain, np.broadcast_to(T, (len(further), 4, 4)), np.tile(y[i], (len(further), 1)), further, size
+            )
+            if whole:
+                found = max(found, int(np.sum(on)))
+    return found
+
+
+def _that_lead_away(chain: Chain, T: Array, x: Array, ways: Array, dimension: int, size: float) -> Array:
+    """Those directions (k, n) of a surface through x (n,) that curves follow on it: all `ways`, if all do."""
+    chosen = _coordinates(ways, dimension)
+    along, locked = np.array([way for way, _ in chosen]), np.array([locks for _, locks in chosen])
+    many = np.broadcast_to(T, (len(along), 4, 4))
+    on = leads_away(chain, many, np.tile(x, (len(along), 1)), along, size, locked)
+    _, J = errors(chain, T[None], x[None], size)
+    on |= np.array([coaxial_line(J[0], way) is not None for way in along])
+    return ways if on.all() else along[on]
+
+
+def trace(chain: Chain, T: Array, q: Array, size: float, way: Array | None = None) -> Curve | None:
+    """The self-motion through q (n,) [rad | m] at T (4, 4), along `way` (n,) in x; None where there is none."""
+    local = classify(chain, T[None], q[None], size)
+    if not local.dimension[0]:
+        return None
+    which = 0 if way is None else int(np.argmax(np.abs(local.ways[0] @ way)))
+    return traced_sets(chain, T[None], local, [(0, which)], size)[0]
+
+
+def traced_sets(chain: Chain, T: Array, local: Local, chosen: list[tuple[int, int]], size: float) -> list[Curve]:
+    """The sets through some seeds, each given as (seed, which of its directions); T: (s, 4, 4) the seeds' targets.
+
+    Where the set has more dimensions all its directions are followed.
+    """
+    scale = scale_of(chain, size)
+    rows: list[tuple[int, Array, Flags]] = []
+    spans = []
+    for i, k in chosen:
+        first = len(rows)
+        if local.dimension[i] <= 1:
+            rows.append((i, local.ways[i][k], np.zeros(chain.n, dtype=bool)))
+        else:
+            rows.extend((i, way, locked) for way, locked in _coordinates(local.ways[i], int(local.dimension[i])))
+        spans.append((first, len(rows)))
+    index = np.array([row[0] for row in rows], dtype=np.intp)
+    curves = trace_many(
+        chain,
+        T[index],
+        local.q[index] / scale,
+        np.array([row[1] for row in rows]),
+        size,
+        np.array([row[2] for row in rows]),
+    )
+    out = []
+    for (i, _), (first, last) in zip(chosen, spans, strict=True):
+        dimension = int(local.dimension[i])
+        sheets = tuple(curves[first:last]) if dimension > 1 else ()
+        head = curves[first]
+        out.append(Curve(head.q, head.tangents, scale, head.closed, head.ended, dimension, sheets))
+    return out
+
+
+def _coordinates(ways: Array, dimension: int) -> list[tuple[Array, Flags]]:
+    """Directions (n,) in which one joint of a basis moves, each with the others of the basis, which are locked (n,)."""
+    span = np.linalg.svd(ways, full_matrices=False)[2][:dimension]
+    basis = few_joints(span)
+    pivots = []
+    for row in range(len(basis)):
+        alone = np.all(np.abs(np.delete(basis, row, axis=0)) < 1e-9, axis=0)
+        pivots.append(int(np.argmax(np.abs(basis[row]) * alone)))
+    out = []
+    for row, way in enumerate(basis):
+        locked = np.zeros(basis.shape[1], dtype=bool)
+        locked[[pivot for i, pivot in enumerate(pivots) if i != row]] = True
+        out.append((way / np.linalg.norm(way), locked))
+    return out

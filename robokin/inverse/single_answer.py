@@ -1,0 +1,138 @@
+"""The answer for one target of a block: its solutions with their names, its self-motions, and why there is none."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.arcs import arcs_within
+from robokin.inverse.branches import branch_names
+from robokin.inverse.claims import BASES
+from robokin.inverse.redundant import NOT_FOUND
+from robokin.inverse.result import Arc, Family, Result, Solution
+from robokin.inverse.solution_sets import families
+from robokin.inverse.target_block import Request, TargetBlock, stands_for
+from robokin.inverse.verify import within_limits, wrapped
+from robokin.kinematics.forward import forward_kinematics
+from robokin.spatial.transforms import FARTHEST
+
+Array = NDArray[np.float64]
+
+REACHED = 1e-8
+"""A nearest configuration whose position is off by less, in the arm's size, lacks only the orientation."""
+
+USELESS = 10.0 * FARTHEST
+"""A limit beyond this [m] keeps a joint from no target, and its square may be no number."""
+
+MOST = 16
+"""Solutions listed for an arm that has infinitely many."""
+
+STANDS = 1e-5
+"""A listed solution this near [rad | size] to the member that was chosen to stand for a self-motion is that member."""
+
+OUTSIDE = "outside the joint limits"
+"""The reason where there are solutions but for the limits."""
+
+FAR = "out of reach"
+"""The reason where not even the position can be had."""
+
+FAR = "out of reach"
+"""The reason where not even the position can be had."""
+
+
+def result_of(request: Request, block: TargetBlock, i: int) -> Result:
+    """The answer for target i of a block: names, self-motions, reasons."""
+    analysis, found = request.analysis, block.found
+    rows = slice(np.searchsorted(found.index, i), np.searchsorted(found.index, i, side="right"))
+    q, position, angle = found.q[rows], found.position[rows].tolist(), found.angle[rows].tolist()
+    names, inside, free = block.names[rows], block.inside[rows].tolist(), block.free[rows]
+    solutions = tuple(map(Solution, q, names, inside, position, angle, free))
+    method = "numeric" if request.method == "numeric" else analysis.method
+    sets = families_of(request, block, i, q)
+    complete = bool(block.claims.basis[i]) and not block.cut[i]
+    idle = {i + 1 for i in analysis.idle}
+    postures = complete and all(idle.issuperset(solution.free) for solution in solutions)
+    known = {joint for family in sets for joint in family.joints} | idle
+    known_all = all(known.issuperset(solution.free) for solution in solutions)
+    complete = complete and known_all and not (idle and solutions)
+    tried, same = block.claims.candidates, block.claims.duplicates
+    found_of = {} if tried is None or same is None else {"found": int(tried[i]), "duplicates": int(same[i])}
+    within = {"within_limits": int(block.within[i])} if request.limits else {}
+    told: dict[str, Any] = {
+        "families": sets,
+        "counts": {**found_of, "closing": int(block.closing[i]), **within, "listed": len(solutions)},
+        "postures": postures,
+        "basis": BASES[block.claims.basis[i]] if complete else None,
+        "all_known": bool(block.claims.basis[i]) and known_all,
+        "certificate": block.claims.sentence(i),
+    }
+    if solutions:
+        return Result(solutions, complete, method, **told)
+    reason, nearest = why_not(request, block, i)
+    return Result((), complete, method, reason, nearest, **told)
+
+
+def families_of(request: Request, block: TargetBlock, i: int, q: Array) -> tuple[Family, ...]:
+    """The self-motions of target i, with their pieces within the limits, for its listed solutions q: (k, n)."""
+    analysis, robot = request.analysis, request.robot
+    if request.method != "numeric" and analysis.redundancy == 1 and not analysis.open and not analysis.idle:
+        return _redundant_families(request, block, i, q) if request.motions else ()
+    if request.method == "numeric" or i not in block.claims.motions:
+        return ()
+    moving = analysis.moving
+    own = len(moving)
+    limits = request.own_limits[moving]
+    out = []
+    for motion in block.claims.motions[i]:
+        arcs = []
+        for arc in arcs_within(motion.curve, analysis.own, block.turned[i], limits, analysis.size):
+            whole = np.tile(request.middle, (len(arc.q), 1))
+            whole[:, moving] = arc.q
+            if not request.limits:
+                # Full turns of a joint count for nothing here: the piece is told about zero.
+                middle = (np.min(whole, axis=0) + np.max(whole, axis=0)) / 2.0
+                whole -= np.where(robot.revolute, 2.0 * np.pi * np.round(middle / (2.0 * np.pi)), 0.0)
+            arcs.append(Arc(whole, arc.whole))
+        joints = tuple(int(moving[k - 1]) + 1 for k in motion.curve.joints if k <= own)
+        if not joints:
+            continue
+        solution = stands_for(robot, analysis, q, motion)
+        out.append(Family(joints, motion.curve.dimension, motion.curve.closed, tuple(arcs), solution))
+    return tuple(out)
+
+
+def _redundant_families(request: Request, block: TargetBlock, i: int, q: Array) -> tuple[Family, ...]:
+    """The self-motions that the listed solutions q: (k, n) of target i are on, for an arm with one joint to spare."""
+    analysis, limits = request.analysis, request.own_limits
+    if not len(q):
+        return ()
+    T, size = block.T[i], analysis.size
+    sets = families(analysis.chain, T[None], q, size)
+    out = []
+    for number, curve in enumerate(sets.curves[0]):
+        members = np.flatnonzero(sets.of == number)
+        if len(members):
+            arcs = arcs_within(curve, analysis.chain, T, limits, size)
+            out.append(Family(curve.joints, curve.dimension, curve.closed, arcs, int(members[0])))
+    return tuple(out)
+
+
+def why_not(request: Request, block: TargetBlock, i: int) -> tuple[str, Solution]:
+    """Why a target has no solution, and the configuration that comes nearest."""
+    robot, analysis = request.robot, request.analysis
+    q, position, angle = block.nearest(i)
+    q, inside = within_limits(wrapped(q[None], robot.revolute), robot.revolute, robot.limits, request.near)
+    if analysis.open:
+        # What the task leaves open is no error: all of the orientation, or the turn about the tool's z axis.
+        z, wish = forward_kinematics(robot, q[0])[:3, 2], block.T[i, :3, 2]
+        angle = float(2.0 * np.arcsin(np.minimum(np.linalg.norm(z - wish) / 2.0, 1.0))) if analysis.open == 1 else 0.0
+    nearest = Solution(q[0], branch_names(robot, q)[0], bool(inside[0]), position, angle)
+    if block.closing[i]:
+        return block.outside(i), nearest
+    if not block.claims.basis[i] and not block.beyond[i]:
+        return NOT_FOUND, nearest
+    if analysis.open < 3 and position <= REACHED * analysis.size:
+        return "orientation not attainable by this arm at that position", nearest
+    return FAR, nearest

@@ -1,0 +1,293 @@
+"""A block of targets with their answers as flat lists: what is listed of what was found, and in which order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.analysis import Analysis
+from robokin.inverse.blocks import solve_block, turned_in_the_open
+from robokin.inverse.branches import branch_names, listed_names
+from robokin.inverse.claims import unclaimed
+from robokin.inverse.closest import TOGETHER, beyond_reach, nearest_configurations
+from robokin.inverse.closing import closing_nearest
+from robokin.inverse.members import Motion
+from robokin.inverse.nearest import free_at, numeric_solutions
+from robokin.inverse.numeric import descend, error_and_jacobian
+from robokin.inverse.redundant import MOST_SOUGHT, UNPROVEN, supplemented
+from robokin.inverse.spread import well_spread
+from robokin.inverse.verify import CLOSES, Found, distinct, merged, nothing, within_limits, wrapped
+from robokin.model import Robot
+from robokin.spatial.transforms import FARTHEST
+
+Array = NDArray[np.float64]
+Method = Literal["auto", "analytic", "numeric"]
+
+TYPED = 1e-3
+"""A wish that misses a target by less [size and rad] is meant to be a solution for it: it was typed or printed."""
+
+REACHED = 1e-8
+"""A nearest configuration whose position is off by less, in the arm's size, lacks only the orientation."""
+
+USELESS = 10.0 * FARTHEST
+"""A limit beyond this [m] keeps a joint from no target, and its square may be no number."""
+
+MOST = 16
+"""Solutions listed for an arm that has infinitely many."""
+
+STANDS = 1e-5
+"""A listed solution this near [rad | size] to the member that was chosen to stand for a self-motion is that member."""
+
+OUTSIDE = "outside the joint limits"
+"""The reason where there are solutions but for the limits."""
+
+FAR = "out of reach"
+"""The reason where not even the position can be had."""
+
+USELESS = 10.0 * FARTHEST
+"""A limit beyond this [m] keeps a joint from no target, and its square may be no number."""
+
+MOST = 16
+"""Solutions listed for an arm that has infinitely many."""
+
+STANDS = 1e-5
+"""A listed solution this near [rad | size] to the member that was chosen to stand for a self-motion is that member."""
+
+OUTSIDE = "outside the joint limits"
+"""The reason where there are solutions but for the limits."""
+
+FAR = "out of reach"
+"""The reason where not even the position can be had."""
+
+MOST = 16
+"""Solutions listed for an arm that has infinitely many."""
+
+STANDS = 1e-5
+"""A listed solution this near [rad | size] to the member that was chosen to stand for a self-motion is that member."""
+
+OUTSIDE = "outside the joint limits"
+"""The reason where there are solutions but for the limits."""
+
+FAR = "out of reach"
+"""The reason where not even the position can be had."""
+
+STANDS = 1e-5
+"""A listed solution this near [rad | size] to the member that was chosen to stand for a self-motion is that member."""
+
+OUTSIDE = "outside the joint limits"
+"""The reason where there are solutions but for the limits."""
+
+FAR = "out of reach"
+"""The reason where not even the position can be had."""
+
+OUTSIDE = "outside the joint limits"
+"""The reason where there are solutions but for the limits."""
+
+FAR = "out of reach"
+"""The reason where not even the position can be had."""
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """What is asked for, checked."""
+
+    robot: Robot
+    analysis: Analysis
+    limits: bool
+    near: Array | None
+    method: Method
+    most: int | None
+    seed: int
+    motions: bool = False
+
+    @property
+    def own_limits(self) -> Array:
+        """(n, 2) the limits that searches stay within; those of a slide beyond every target are none."""
+        none = np.tile([-np.inf, np.inf], (self.robot.n, 1))
+        if not self.limits:
+            return none
+        return np.where(np.abs(self.robot.limits) > USELESS, none, self.robot.limits)
+
+    @property
+    def middle(self) -> Array:
+        """(n,) where a joint is put that may be anywhere [rad | m]: at `near`, or at zero, or amid its limits."""
+        low, high = self.robot.limits.T
+        if self.near is not None:
+            turned, _ = within_limits(self.near[None], self.robot.revolute, self.robot.limits, self.near)
+            return np.clip(turned[0], low, high) if self.limits else self.near
+        with np.errstate(invalid="ignore"):
+            amid = np.where(np.isfinite(low) & np.isfinite(high), (low + high) / 2.0, np.clip(0.0, low, high))
+        return np.where((low <= 0.0) & (high >= 0.0), 0.0, amid)
+
+
+class TargetBlock:
+    """The answers for a block of targets, as flat lists."""
+
+    def __init__(self, request: Request, T: Array) -> None:
+        robot, analysis = request.robot, request.analysis
+        self.request, self.T = request, T
+        self._nearest: dict[int, tuple[Array, float, float]] = {}
+        found, self.claims = nothing(robot.n), unclaimed(len(T))
+        if request.method != "numeric":
+            found, self.claims = solve_block(analysis, T, request.own_limits, request.near, request.middle)
+        if request.near is not None and analysis.redundancy and not analysis.open and request.method != "numeric":
+            found = _with_more(found, _beside(request, T, request.near), np.arange(len(T)))
+        found, inside = _limited(request, found)
+        later: NDArray[np.intp] | None = None
+        if request.method != "numeric" and analysis.solver is not None and analysis.redundancy:
+            wanted = MOST if request.most is None or request.most > MOST_SOUGHT else request.most
+            search = ~self.beyond if request.method == "auto" else np.zeros(len(T), dtype=bool)
+            limits, middle = request.own_limits, request.middle
+            found, later = supplemented(analysis, T, limits, middle, request.seed, found, wanted, MOST, search)
+            found, inside = _limited(request, found)
+        searches: list[Callable[[Analysis, Array, Array, Array, int], Found]] = []
+        if request.method == "numeric" or (request.method == "auto" and analysis.solver is None):
+            searches = [numeric_solutions, closing_nearest]
+        elif request.method == "auto" and not analysis.redundancy:
+            # Where nothing vouches for there being none, what comes nearest within the limits may close.
+            searches = [closing_nearest]
+        for search_for in searches:
+            answered = (np.bincount(found.index[inside], minlength=len(T)) > 0) | self.beyond | (self.claims.basis > 0)
+            missing = np.flatnonzero(~answered)
+            if len(missing):
+                more = search_for(analysis, T[missing], request.own_limits, request.middle, request.seed)
+                both = distinct(_with_more(found, more, missing), robot.revolute, analysis.size)
+                found, inside = _limited(request, both)
+        self.closing = np.bincount(found.index, minlength=len(T))
+        self.every = found.q, found.index
+        if request.limits:
+            later = None if later is None else later[inside]
+            found, inside = found.pick(inside), inside[inside]
+        self.within = np.bincount(found.index, minlength=len(T))
+        self.found, self.inside = _ordered(request, found, inside, later)
+        self.count = np.bincount(self.found.index, minlength=len(T))
+        self.cut = self.within > self.count
+
+    @cached_property
+    def names(self) -> list[str]:
+        """The branch of each configuration."""
+        robot, found = self.request.robot, self.found
+        if self.request.analysis.redundancy:
+            # What is listed is a choice. Orientations that were tried are no postures, and no numbers tell them apart.
+            return branch_names(robot, found.q, None if self.request.analysis.open else found.index)
+        return listed_names(robot, found.q, found.index, self.every)
+
+    @cached_property
+    def free(self) -> list[tuple[int, ...]]:
+        """The joints of each configuration that may trade motion with each other."""
+        analysis, found = self.request.analysis, self.found
+        if analysis.redundancy or analysis.solver is None or self.request.method == "numeric":
+            return free_at(analysis, found.q) if len(found) else []
+        moving, idle = analysis.moving, tuple(i + 1 for i in analysis.idle)
+        free = [idle] * len(found)
+        for i, motions in self.claims.motions.items():
+            rows = np.arange(np.searchsorted(found.index, i), np.searchsorted(found.index, i, side="right"))
+            for motion in motions:
+                row = stands_for(self.request.robot, analysis, found.q[rows], motion)
+                if row >= 0:
+                    own = {int(moving[k - 1]) + 1 for k in motion.curve.joints if k <= len(moving)}
+                    free[rows[row]] = tuple(sorted({*idle, *own}))
+        return free
+
+    def outside(self, i: int) -> str:
+        """Why target i, which has solutions but for the limits, has none: proven or not."""
+        return OUTSIDE if self.claims.basis[i] else UNPROVEN
+
+    @cached_property
+    def turned(self) -> Array:
+        """The targets (m, 4, 4) as the solver takes them."""
+        return turned_in_the_open(self.request.analysis, self.T)
+
+    @cached_property
+    def beyond(self) -> NDArray[np.bool_]:
+        """Which targets are farther off than the arm is long."""
+        return beyond_reach(self.request.analysis, self.T, self.request.own_limits)
+
+    def nearest(self, i: int) -> tuple[Array, float, float]:
+        """The configuration (n,) closest to target i, which has no solution, and its distance [m] and angle [rad].
+
+        Together they take less time each: with it those to the next targets without a solution are found,
+        of the same kind, as often only one kind is asked for.
+        """
+        if i not in self._nearest:
+            alike = (self.count == 0) & ((self.closing > 0) == (self.closing[i] > 0))
+            rows = i + np.flatnonzero(alike[i:])[:TOGETHER]
+            request = self.request
+            found = nearest_configurations(
+                request.analysis, self.T[rows], request.own_limits, request.middle, request.seed
+            )
+            for row, q, position, angle in zip(rows.tolist(), *found, strict=True):
+                self._nearest[row] = q, float(position), float(angle)
+        return self._nearest[i]
+
+
+def _beside(request: Request, T: Array, near: Array) -> Found:
+    """The solutions for targets T (m, 4, 4) that steps from `near` (n,) lead to, where it nearly is one itself."""
+    analysis, chain = request.analysis, request.analysis.chain
+    start = np.tile(near, (len(T), 1))
+    off, _ = error_and_jacobian(chain, T, start, analysis.size)
+    index = np.flatnonzero(np.max(np.abs(off), axis=1) <= TYPED)
+    q, off = descend(chain, T[index], start[index], analysis.size, limits=request.own_limits, steps=10)
+    position, angle = np.linalg.norm(off[:, :3], axis=1), np.linalg.norm(off[:, 3:], axis=1)
+    closes = (position <= CLOSES) & (angle <= CLOSES)
+    return Found(index, q, position * analysis.size, angle).pick(closes)
+
+
+def _with_more(found: Found, more: Found, missing: NDArray[np.intp]) -> Found:
+    """All configurations, sorted by target; more's targets are numbered as in `missing`."""
+    both = merged(found, Found(missing[more.index], more.q, more.position, more.angle))
+    return both.pick(np.argsort(both.index, kind="stable"))
+
+
+def _limited(request: Request, found: Found) -> tuple[Found, NDArray[np.bool_]]:
+    """Angles turned into the limits, and which configurations are within them."""
+    robot = request.robot
+    q, inside = within_limits(found.q, robot.revolute, robot.limits, request.near)
+    return Found(found.index, q, found.position, found.angle), inside
+
+
+def _ordered(
+    request: Request, found: Found, inside: NDArray[np.bool_], later: NDArray[np.intp] | None
+) -> tuple[Found, NDArray[np.bool_]]:
+    """By target, then by the move from `near` if there is one, and cut to the number asked for.
+
+    Of infinitely many some well spread ones; without `near` each is the farthest from those before it. later: (s,)
+    the generation of each, if there are any; the first ones are listed first.
+    """
+    analysis, revolute = request.analysis, request.robot.revolute
+    if not len(found):
+        return found, inside
+    scale = np.where(revolute, 1.0, analysis.size)
+    if analysis.redundancy or analysis.solver is None:
+        move = np.max(np.abs(found.q - request.middle) / scale, axis=1)
+        most = MOST if request.most is None else request.most
+        rank = inside.astype(np.intp)
+        if later is not None:
+            rank *= 1 + later.max(initial=0) - later
+        chosen = well_spread(found.index, wrapped(found.q, revolute) / scale, revolute, move, rank, most)
+        found, inside = found.pick(chosen), inside[chosen]
+    if request.near is not None:
+        move = np.max(np.abs(found.q - request.near) / scale, axis=1)
+        order = np.lexsort((move, found.index))
+        found, inside = found.pick(order), inside[order]
+    if request.most is None:
+        return found, inside
+    rank = np.arange(len(found)) - np.searchsorted(found.index, found.index)
+    keep = rank < request.most
+    return found.pick(keep), inside[keep]
+
+
+def stands_for(robot: Robot, analysis: Analysis, q: Array, motion: Motion) -> int:
+    """Which of solutions q: (k, n) stands for a self-motion; -1 for none, as where the list was cut."""
+    moving = analysis.moving
+    if not len(moving) or not len(q):
+        return -1
+    turning = robot.revolute[moving]
+    away = (q[:, moving] - motion.q[: len(moving)]) / np.where(turning, 1.0, analysis.size)
+    gap = np.max(np.abs(wrapped(away, turning)), axis=1)
+    return int(np.argmin(gap)) if np.min(gap) <= STANDS else -1

@@ -1,0 +1,165 @@
+"""The window's joints solved for a block of targets by the arm's own solver, and which targets are doubtful.
+
+Statement. For targets T of a window of at most six joints (`analysis`) find all configurations, proven by forward
+kinematics, and say for each target whether the algebra vouches for the list.
+What vouches. An elimination gives all complex solutions: if as many distinct regular ones are found as the arm has at
+a random pose, none is missing (`elimination`). A closed form follows all roots of its equations. It may lose one where
+two roots meet, where an axis is nearly free to turn, or where an equation says nothing: the arm is singular there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.analysis import Analysis, General
+from robokin.inverse.complex_newton import complex_refine, regular, regular_and_distinct
+from robokin.inverse.elimination import REAL
+from robokin.inverse.loop import ComplexCandidates
+from robokin.inverse.nearest import SINGULAR as ON_CURVE
+from robokin.inverse.newton import determinants
+from robokin.inverse.numeric import descend, error_and_jacobian
+from robokin.inverse.verify import CLOSES, VIRTUAL, Found, Poses, closing_distances, distinct, verified
+from robokin.kinematics.chain import Chain
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+SINGULAR = 5e-6
+"""Least singular value of the Jacobian (lengths in sizes) of a closed form's solution below which others may be lost:
+a root that is good to 1e-15 and its neighbour are then some 1e-5 apart, and equations neglect 1e-9."""
+
+TOLD_APART = 1e-7
+"""The same of solutions that are as many as the equations have roots: none is missing if they are told apart."""
+
+ROUNDED = 1e-14
+"""Residual above which an elimination's solution is polished: it then does not depend on the poses beside it."""
+
+CLEARLY_REGULAR = 1e-4
+"""|det S| (lengths in sizes) above which the least singular value is above 1e-6: the others are some three at most."""
+
+ROUGH = 1e-12
+"""Residual of a complex solution that is left as the elimination gives it; half of them are."""
+
+GRAZING = 1e-5
+"""A virtual joint below this may be zero but for rounding (at a double root half of the digits are lost); the
+arm's own joints are then polished alone and judged by their own residual."""
+
+
+@dataclass(eq=False)
+class Doubt:
+    """Targets (m,) of which some solution may be missing for `certain`, or only if the arm is near-singular there.
+
+    candidates: (m,) how many were tried.
+    """
+
+    certain: NDArray[np.bool_]
+    possible: NDArray[np.bool_]
+    candidates: Index
+
+
+def solve_window(analysis: Analysis, T: Array, count: bool = True) -> tuple[Found, Doubt]:
+    """Solutions of the window for its own targets; q: (s, window). Without `count` nothing is vouched for."""
+    six, loop, solver = analysis.six, analysis.loop, analysis.solver
+    assert six is not None
+    assert loop is not None
+    closing = loop.closing(T)
+    poses = Poses(six.chain, T)
+    if isinstance(solver, General):
+        candidates, imaginary = solver.first.all_candidates(closing, complex_too=count)
+        found = distinct(verified(loop, six.chain, poses, closing, candidates, ROUNDED), six.chain.revolute, loop.size)
+        tried = np.bincount(candidates.index, minlength=len(T))
+        doubt = Doubt(np.ones(len(T), dtype=bool), np.zeros(len(T), dtype=bool), tried)
+        if count:
+            doubt.certain = _count(analysis, closing, found, imaginary) != analysis.number
+    else:
+        candidates = solver.candidates(closing)
+        found = verified(loop, six.chain, poses, closing, candidates)
+        assert candidates.loose is not None
+        assert candidates.near is not None
+        doubt = Doubt(candidates.loose, candidates.near, np.bincount(candidates.index, minlength=len(T)))
+    if six.virtual:
+        found = _own_joints(analysis, T, found)
+    return found, doubt
+
+
+def _count(analysis: Analysis, closing: Array, found: Found, imaginary: ComplexCandidates) -> Index:
+    """The distinct regular complex solutions (m,) of the loop among those found and the complex candidates."""
+    six, loop = analysis.six, analysis.loop
+    assert six is not None
+    assert loop is not None
+    values = (found.q + six.chain.offsets) / np.where(six.chain.revolute, 1.0, loop.size)
+    # The real ones are distinct and close; a determinant this great has no small singular value.
+    sound = determinants(loop, values) > CLEARLY_REGULAR
+    sound[~sound] = regular(loop, values[~sound], np.zeros(np.count_nonzero(~sound)))
+    count = np.bincount(found.index[sound], minlength=len(closing))
+    index, complex_values = imaginary.index, imaginary.values
+    complex_values, residual = complex_refine(loop, closing, index, complex_values, 0)
+    rough = np.flatnonzero(residual > ROUGH)
+    if len(rough):
+        complex_values[rough], residual[rough] = complex_refine(loop, closing, index[rough], complex_values[rough], 3)
+    residual[np.abs(complex_values.imag).max(axis=1, initial=0.0) <= REAL] = np.inf
+    kept = regular_and_distinct(loop, index, complex_values, residual)
+    return np.asarray(count + 2 * np.bincount(index[kept], minlength=len(closing)))
+
+
+def _own_joints(analysis: Analysis, T: Array, found: Found) -> Found:
+    """Those whose virtual joints stand still, with the window's own joints only."""
+    assert analysis.six is not None
+    assert analysis.loop is not None
+    chain = analysis.six.chain
+    own = chain.n - analysis.six.virtual
+    scale = np.where(chain.revolute[own:], 1.0, analysis.loop.size)
+    virtual = found.q[:, own:] / scale
+    virtual = np.where(chain.revolute[own:], virtual - 2 * np.pi * np.round(virtual / (2 * np.pi)), virtual)
+    size = np.max(np.abs(virtual), axis=1)
+    still = size <= GRAZING
+    family = np.zeros(len(found), dtype=bool)
+    if not analysis.redundancy:
+        family = _on_self_motions(analysis, T, found, still)
+    found = found.pick(still | family)
+    own_chain = analysis.own
+    q, position, angle = found.q[:, :own], found.position.copy(), found.angle.copy()
+    if not len(q):
+        return Found(found.index, q, position, angle)
+    steps = 2 if np.all(size <= VIRTUAL) else 8 if not family.any() else 25
+    q, error = descend(own_chain, T[found.index], q, analysis.size, steps=steps)
+    position = np.linalg.norm(error[:, :3], axis=1) * analysis.size
+    angle = np.linalg.norm(error[:, 3:], axis=1)
+    closes = (position <= closing_distances(own_chain, q, analysis.size)) & (angle <= CLOSES)
+    return Found(found.index, q, position, angle).pick(closes)
+
+
+def _on_self_motions(analysis: Analysis, T: Array, found: Found, still: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(s,) which configurations are on self-motions of the six joints, for targets without any that stand `still`.
+
+    Such a curve may lead to where the virtual joints stand still: its members are starts for the arm's own.
+    """
+    assert analysis.six is not None
+    answered = np.bincount(found.index[still], minlength=len(T)) > 0
+    family = ~answered[found.index]
+    chosen = np.flatnonzero(family)
+    if len(chosen):
+        _, J = error_and_jacobian(analysis.six.chain, T[found.index[chosen]], found.q[chosen], analysis.size)
+        family[chosen] = np.linalg.svd(J, compute_uv=False)[:, -1] <= ON_CURVE
+    return family
+
+
+def least_singular_values(chain: Chain, q: Array, size: float) -> Array:
+    """The least singular value (s,) of the Jacobian, lengths in sizes, at q (s, n) [rad | m]."""
+    if not len(q):
+        return np.empty(0)
+    T = np.broadcast_to(np.eye(4), (len(q), 4, 4))
+    _, J = error_and_jacobian(chain, T, q, size)
+    return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
+
+
+def beyond_chain(chain: Chain, T: Array, size: float) -> NDArray[np.bool_]:
+    """Which targets T (m, 4, 4) [m] are farther off than a chain of turning joints, stretched out, is long."""
+    if not chain.revolute.all():
+        return np.zeros(len(T), dtype=bool)
+    length = np.sum(np.linalg.norm(chain.constants[1:, :3, 3], axis=1))
+    away = np.linalg.norm(T[:, :3, 3] - chain.constants[0, :3, 3], axis=1)
+    return np.asarray(away > length + 1e-6 * size)
