@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.analysis import Analysis, chain_pose_parts
+from robokin.inverse.analysis import Analysis, General, chain_pose_parts
 from robokin.inverse.claims import COUNTED, SPREAD, Claims, replaced, unclaimed
 from robokin.inverse.second_look import look_again
 from robokin.inverse.verify import Found, distinct, distinct_and_close, merged, nothing
@@ -131,7 +131,7 @@ def complete_solutions(
     again = np.flatnonzero(doubt.certain & ~beyond_chain(chain, T, analysis.size))
     claims = Claims(np.full(len(T), COUNTED, dtype=np.int8), analysis.number, count)
     claims.candidates, claims.duplicates = doubt.candidates, closing - count
-    claims.branches = bool(analysis.open or (analysis.six is not None and analysis.six.virtual))
+    claims.branches = not isinstance(analysis.solver, General)
     if not len(again):
         return found, claims
     part = found.pick(doubt.certain[found.index])

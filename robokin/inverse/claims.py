@@ -1,8 +1,8 @@
 """What may be said of the solutions that were found for a block of targets, and what it rests on.
 
 - counted: the arm has N complex solutions at almost every pose and nowhere more isolated ones; as many distinct
-  regular ones were found. The roots of a closed form's equations are counted alike: those that are not real are known
-  to be complex.
+  regular ones were found. Of a closed form all branches were followed, and its equations are regular: roots that are
+  not real are known to be complex.
 - accounted: from two independent starts all N paths of a homotopy ended in regular, singular or infinite solutions, the
   same regular ones, and all of these were found.
 - nothing: there may be more, and `words` says why.
@@ -37,7 +37,8 @@ class Claims:
 
     N: the number of complex solutions, or of a closed form's branches, that were counted; real: (m,) how many distinct
     real ones were found; candidates, duplicates: (m,) how many were tried, and how many of those that close were the
-    same as another one; branches: whether the N are branches of a closed form with joints added to the arm's own;
+    same as another one; branches: whether the N are branches of a closed form, whose complex
+    roots are known to be complex and not worked out;
     motions: the self-motions of those targets that have some.
     """
 
@@ -55,7 +56,7 @@ class Claims:
         """What the completeness of target i rests on, or why there is none."""
         if i in self.words:
             return self.words[i]
-        if self.basis[i] == COUNTED and self.branches:
+        if self.basis[i] == COUNTED and self.branches and self.real[i] != self.N:
             return f"all {self.N} branches of the closed form followed"
         if self.basis[i] == COUNTED:
             return f"{self.N} of {self.N} complex solutions found, {self.real[i]} real"
