@@ -36,11 +36,11 @@ SHORT = {"unanswered": "unans", "lost": "lost", "on no family": "nofam", "falsel
 MEANING = """unans  no solution, though the configuration that made the pose is one, within the limits
 lost   a regular generating configuration is not among the solutions (1e-6)
 nofam  a singular one is neither listed nor on a self-motion
-false  called complete, though it or a solution found by Newton's method from random guesses is missing
+false  called complete, though it or a solution that Newton's method finds from guesses is missing
 wrong  a listed solution misses the pose or the limits;  twice  one is listed twice (1e-5)
 ulp    the regular solutions change with the last digits of the pose
 batch  the answer differs from that for the pose alone;  error  an exception or a warning
-all    called complete, %: by a count of all complex solutions (count), by an account of all paths (acct)
+all    called complete, %: by a count of all complex solutions or branches (count), else by an account of all paths
 ms     a pose in a batch, its result read;  alone  a pose alone that is not certified by a count"""
 
 
@@ -107,9 +107,9 @@ def measure_together(report: Report, arm: Arm, q: Any, kinds: list[str], amount:
     """Judge the answers for the poses of q: (m, n), which are solved in one call; each alone where that fails."""
     T = robokin.forward_kinematics(arm.robot, q)
     try:
-        start = time.perf_counter()
+        start = time.process_time()
         results = list(robokin.solve_ik(arm.robot, T))
-        taken = (time.perf_counter() - start) / len(T)
+        taken = (time.process_time() - start) / len(T)
         other = robokin.solve_ik(arm.robot, judge.shaken(T, arm.rng))
     except Exception as error:
         failed = f"{type(error).__name__}: {error}"
@@ -124,10 +124,11 @@ def measure_together(report: Report, arm: Arm, q: Any, kinds: list[str], amount:
         return
     for i, (kind, result) in enumerate(zip(kinds, results, strict=True)):
         row = kind if not kind.startswith("round") else "round, disturbed"
+        method = result.method.removeprefix("three ")
         tallies = report.groups(
             (arm.block, "all"),
             (f"{arm.block}: by pose", row),
-            (f"{arm.block}: by method", f"{result.method}, {arm.robot.n}"),
+            (f"{arm.block}: by method", f"{method}, {arm.robot.n}"),
             (f"{arm.block}: arms with faults", arm.title),
         )
         moved = other.q[i, : other.count[i]]
@@ -154,12 +155,12 @@ def judged(
     if judge.differ(arm.robot, arm.scale, judge.listed(arm.robot, result), moved):
         broken.append("by an ulp")
     if arm.rng.random() < amount.alone:
-        start = time.perf_counter()
+        start = time.process_time()
         try:
             single = robokin.solve_ik(arm.robot, T)
         except Exception as error:
             return [*broken, "error"], None, f", alone {type(error).__name__}: {error}"
-        alone = time.perf_counter() - start
+        alone = time.process_time() - start
         difference = judge.differs_alone(arm.robot, arm.scale, result, single)
         if difference:
             broken.append("batch")
@@ -179,18 +180,17 @@ def count(tallies: list[Tally], result: Any, broken: list[str], taken: float, al
             tally.alone.append(alone)
 
 
-HEAD = f"  {'':<26}{'poses':>6}" + "".join(f"{SHORT[law]:>6}" for law in SHORT) + (
-    f"{'all%':>5}{'count':>6}{'acct':>5}{'ms':>7}{'alone':>6}"
+HEAD = f"  {'':<18}{'poses':>6}" + "".join(f" {SHORT[law]}" for law in SHORT) + (
+    f"{'all%':>5}{'count':>6}{'ms':>6}{'alone':>6}"
 )  # fmt: skip
 
 
 def row(name: str, tally: Tally) -> str:
-    cells = "".join(f"{tally.broken[law] or '·':>6}" for law in SHORT)
-    share = [f"{100.0 * part / max(tally.poses, 1):.0f}" for part in
-             (tally.complete, tally.basis["counted"], tally.basis["accounted"])]  # fmt: skip
+    cells = "".join(f" {tally.broken[law] or '·':>{len(SHORT[law])}}" for law in SHORT)
+    share = [f"{100.0 * part / max(tally.poses, 1):.0f}" for part in (tally.complete, tally.basis["counted"])]
     alone = f"{1e3 * np.mean(tally.alone):.0f}" if tally.alone else "·"
     together = f"{1e3 * tally.together / max(tally.poses, 1):.1f}"
-    return f"  {name[:26]:<26}{tally.poses:>6}{cells}{share[0]:>5}{share[1]:>6}{share[2]:>5}{together:>7}{alone:>6}"
+    return f"  {name[:18]:<18}{tally.poses:>6}{cells}{share[0]:>5}{share[1]:>6}{together:>6}{alone:>6}"
 
 
 def printed(report: Report, tables: dict[str, str]) -> Iterator[str]:
@@ -233,12 +233,18 @@ def main() -> None:
     parser.add_argument("--each", type=int, default=None, help="poses of each kind for an arm")
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--seconds", type=float, default=np.inf, help="no further arm is begun after so long")
+    parser.add_argument("--searched", type=float, default=None, help="share of poses that are searched from guesses")
+    parser.add_argument("--alone", type=float, default=None, help="share of poses that are solved alone too")
     parser.add_argument("--failures", type=Path, default=None, help="a file for all inputs that break a law")
     asked = parser.parse_args()
     warnings.simplefilter("error")
     full = asked.full or os.environ.get("FULL", "") not in ("", "0")
     each = asked.each or (46 if full else 2)
-    amount = Amount(each, 0.05 if full else 0.25, 1000 if full else 300, 0.05 if full else 0.15, asked.seed)
+    searched = asked.searched if asked.searched is not None else 0.05 if full else 0.25
+    alone = asked.alone if asked.alone is not None else 0.05 if full else 0.15
+    amount = Amount(each, searched, 1000 if full else 300, alone, asked.seed)
+    if asked.failures:
+        asked.failures.write_text("")
     names = [] if asked.arms == "-" else asked.arms.split(",") if asked.arms else arms.library_arms()
     count = asked.chains if asked.chains is not None else 0 if asked.arms not in ("", "-") else 1000 if full else 100
     report, start, tables = Report(), time.perf_counter(), {}
@@ -250,18 +256,17 @@ def main() -> None:
         if time.perf_counter() - start > asked.seconds:
             print(f"{asked.seconds:g} s are over: {title} and what follows are left out")
             break
+        seen = len(report.failures)
         measure(report, robot, block, title, many)
         tables[title] = f" | {arms.dh_of(robot)}" if block == "random chains" else ""
         progress(f"{title}: {len(report.failures)} inputs that break a law so far")
+        if asked.failures:
+            with asked.failures.open("a") as file:
+                for arm, kind, broken, what in report.failures[seen:]:
+                    file.write(f"{arm} | {kind} | {broken} | {what}{tables[arm]}\n")
     for line in printed(report, tables):
         print(line)
     print(f"\n{MEANING}\n\n{report.searched} poses searched from random guesses; {time.perf_counter() - start:.0f} s")
-    if asked.failures:
-        lines = [
-            f"{title} | {kind} | {broken} | {what}{tables.get(title, '')}"
-            for title, kind, broken, what in report.failures
-        ]
-        asked.failures.write_text("\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

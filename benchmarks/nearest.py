@@ -1,22 +1,29 @@
-"""Counts, not times: whether nearest is nearest, and whether every pose of a redundant arm is answered."""
+"""Counts, not times: whether nearest is nearest, beside known configurations and at the edge of the reach.
+
+`python -m benchmarks.nearest` takes `--targets`, `--chains` (random ones) and `--seed`.
+"""
 
 from __future__ import annotations
 
+import argparse
+import sys
 import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
 import numpy as np
+from inverse.arms import random_chain
 
 import robokin
 from benchmarks.machine import line
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.closest import nearest_configurations
-from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import residuals
 from robokin.spatial import rotation_from_axis_angle
 
 SEED = 560
 TARGETS = 2_000
-POSES = 10_000
 TWIST = 0.01
 """How far a target is from the pose of its configuration [rad | size]."""
 
@@ -28,7 +35,8 @@ ARMS = (
 )  # fmt: skip
 """Library arms with two to seven joints, of every family."""
 
-REDUNDANT = ("panda", "iiwa14", "gen72", "r1pro-right", "yumi-right")
+CHOSEN_OF = 1500
+"""Configurations of which those farthest in and out are at the edge of the reach."""
 
 
 def configurations(robot: robokin.Robot, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -61,42 +69,51 @@ def home(robot: robokin.Robot) -> np.ndarray:
     return np.clip(0.0, *robot.limits.T)
 
 
-def worse_than_known(robot: robokin.Robot, count: int, rng: np.random.Generator) -> tuple[int, float]:
+def at_the_edge(robot: robokin.Robot, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Configurations (count, n) of those that reach farthest from the middle of all places, and least far."""
+    q, _ = configurations(robot, CHOSEN_OF, rng)
+    p = robokin.forward_kinematics(robot, q)[:, :3, 3]
+    order = np.argsort(np.linalg.norm(p - np.mean(p, axis=0), axis=1))
+    return q[rng.choice(np.concatenate([order[:40], order[-80:]]), count)]
+
+
+def worse_than_known(robot: robokin.Robot, count: int, edge: bool, rng: np.random.Generator) -> tuple[int, float]:
     """How many nearest configurations are worse than the one that the target was made from, and the time [s]."""
     analysis = analysis_of(robot)
-    q, _ = configurations(robot, count, rng)
+    q = at_the_edge(robot, count, rng) if edge else configurations(robot, count, rng)[0]
     T = moved(robokin.forward_kinematics(robot, q), analysis.size, rng)
-    start = time.perf_counter()
+    start = time.process_time()
     _, position, angle = nearest_configurations(analysis, T, robot.limits, home(robot), 0)
-    taken = time.perf_counter() - start
+    taken = time.process_time() - start
     known, turned = residuals(T, robokin.forward_kinematics(robot, q))
     off = (position - known) / analysis.size
     return int(np.sum((off > 1e-9) | ((np.abs(off) <= 1e-9) & (angle > turned + 1e-7)))), taken
 
 
-def unanswered(robot: robokin.Robot, count: int, rng: np.random.Generator) -> tuple[np.ndarray, float]:
-    """How many poses within the limits get no solution, of each kind, and the time [s]."""
-    q, kind = configurations(robot, count, rng)
-    T = robokin.forward_kinematics(robot, q)
-    start = time.perf_counter()
-    result = solve_many(robot, T)
-    return np.bincount(kind[result.count == 0], minlength=3), time.perf_counter() - start
+def run(targets: int = TARGETS, chains: int = 0, seed: int = SEED) -> None:
+    """Print the counts of `targets` over all arms, and as many at the edge of the reach."""
+    rng = np.random.default_rng(seed)
+    robots = [robokin.load(name) for name in ARMS] + [random_chain(rng) for _ in range(chains)]
+    each = -(-targets // len(robots))
+    for title, edge in (("beside a known one", False), ("the same at the edge of the reach", True)):
+        total, taken = 0, 0.0
+        print(f"nearest configurations worse than a known one, {title} (limit 0)")
+        for robot in robots:
+            worse, seconds = worse_than_known(robot, each, edge, rng)
+            total, taken = total + worse, taken + seconds
+            if worse:
+                line(robot.name, str(worse), f"of {each}")
+        line("all arms", str(total), f"of {each * len(robots)}, {taken / each / len(robots) * 1e3:.1f} ms a target")
 
 
-def run(targets: int = TARGETS, poses: int = POSES) -> None:
-    """Print both counts: `targets` over all arms, `poses` for each redundant arm."""
-    print(f"nearest configurations worse than a known one, {targets} targets (limit 0)")
-    rng = np.random.default_rng(SEED)
-    each, total, taken = -(-targets // len(ARMS)), 0, 0.0
-    for name in ARMS:
-        worse, seconds = worse_than_known(robokin.load(name), each, rng)
-        total, taken = total + worse, taken + seconds
-        if worse:
-            line(name, str(worse), f"of {each}")
-    line("all arms", str(total), f"of {each * len(ARMS)}, {taken / each / len(ARMS) * 1e3:.1f} ms a target")
-    print(f"poses of redundant arms within limits without a solution, {poses} an arm (limit 0)")
-    for name in REDUNDANT:
-        missing, seconds = unanswered(robokin.load(name), poses, rng)
-        inside, some, every = missing.tolist()
-        remark = f"inside {inside}, some at limits {some}, all at limits {every}; {seconds / poses * 1e3:.1f} ms a pose"
-        line(name, str(inside + some + every), remark)
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.nearest", description=__doc__)
+    parser.add_argument("--targets", type=int, default=TARGETS)
+    parser.add_argument("--chains", type=int, default=0, help="how many random chains besides the library's arms")
+    parser.add_argument("--seed", type=int, default=SEED)
+    asked = parser.parse_args()
+    run(asked.targets, asked.chains, asked.seed)
+
+
+if __name__ == "__main__":
+    main()

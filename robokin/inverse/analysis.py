@@ -25,7 +25,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.elimination import Elimination, choose_splits, generic_count, trial_poses
+from robokin.inverse.elimination import choose_splits, elimination_of, generic_count, trial_poses
 from robokin.inverse.loop import Loop, loop_of
 from robokin.inverse.newton import closing_at
 from robokin.inverse.numeric import error_and_jacobian
@@ -262,7 +262,7 @@ class General:
 
     def __init__(self, loop: Loop, splits: list[int]) -> None:
         self.splits = splits
-        self.first = Elimination(loop, splits[0])
+        self.first = elimination_of(loop, splits[0])
 
     def candidates(self, closing: Array) -> Any:
         """Candidates by the best split."""

@@ -20,8 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.curve_tracing import Curve
+from robokin.inverse.null_motion import CLOSES, corrected
 from robokin.inverse.result import Arc
-from robokin.inverse.track import Track, zeros
+from robokin.inverse.track import CROSSING, ROUNDING, Track, zeros
 from robokin.kinematics.chain import Chain
 
 Array = NDArray[np.float64]
@@ -32,6 +33,9 @@ ON_LIMIT = 1e-12
 FINE = 8
 """Configurations of an arc for each point of the curve: some 0.02 [rad | size] apart, so that straight pieces between
 them are off by 1e-4 at most."""
+
+END = 1e-5
+"""The end of a piece is found so near [rad | size] at least, and then put on the limit."""
 
 INNER = 5
 """Points of an arc that is shorter than a step of its curve."""
@@ -72,8 +76,31 @@ def _arc(track: Track, piece: Piece) -> Arc:
         u = np.linspace(piece.first, piece.last, INNER)
     else:
         u = np.concatenate([[piece.first], inner, [piece.last]])
-    x = (track.at(u) + piece.turns) * track.scale
-    return Arc(x[:, : track.own], piece.whole)
+    x = track.at(u) + piece.turns
+    if not piece.whole:
+        x[[0, -1]] = _on_limits(track, x[[0, -1]])
+    return Arc((x * track.scale)[:, : track.own], piece.whole)
+
+
+def _on_limits(track: Track, x: Array) -> Array:
+    """Ends of pieces (m, n), each with the joint that ends it at its limit exactly.
+
+    Where a curve bends at once the polynomial that the end was found with is off by some 1e-8.
+    """
+    low, high = np.where(track.moving, track.low, -np.inf), np.where(track.moving, track.high, np.inf)
+    beyond = np.concatenate([low - x, x - high], axis=1)
+    worst = np.argmax(beyond, axis=1)
+    joint = worst % x.shape[1]
+    rows = np.flatnonzero(np.abs(beyond[np.arange(len(x)), worst]) <= END)
+    start = x[rows]
+    start[np.arange(len(rows)), joint[rows]] = np.where(worst < x.shape[1], low[joint], high[joint])[rows]
+    held = np.eye(x.shape[1])[joint[rows], None]
+    many = np.broadcast_to(track.T, (len(rows), 4, 4))
+    new, off, _ = corrected(track.chain, many, start, track.size, held, settled=ROUNDING, zero=CROSSING)
+    good = (off <= CLOSES) & (np.max(np.abs(new - x[rows]), axis=1) <= END) & track.is_inside(new, np.zeros(x.shape[1]))
+    out = x.copy()
+    out[rows[good]] = new[good]
+    return out
 
 
 def pieces(track: Track) -> list[Piece]:

@@ -9,13 +9,16 @@ from robokin.inverse.analysis import Analysis, General, chain_pose_parts
 from robokin.inverse.claims import COUNTED, SPREAD, Claims, replaced, unclaimed
 from robokin.inverse.second_look import look_again
 from robokin.inverse.verify import Found, distinct, distinct_and_close, merged, nothing
-from robokin.inverse.window import SINGULAR, TOLD_APART, beyond_chain, least_singular_values, solve_window
+from robokin.inverse.window import SINGULAR, TOLD_APART, beyond_chain, nearly_singular, solve_window
 from robokin.spatial import invert, rotation_transform
 
 Array = NDArray[np.float64]
 
 BLOCK = 4000
 """Targets at a time: the interpreter's share is spread thin, and the columns of a closed form stay in cache."""
+
+KEPT = 2**24
+"""Bytes of memory that a process keeps for the next block instead of giving them back after each."""
 
 HELD_SAMPLES = 48
 """Values at which the joints of a redundant arm are held, for each target."""
@@ -26,6 +29,20 @@ MORE_SAMPLES = 192
 OPEN_TURN = np.array([0.31, -0.47, 0.73])
 """Rotation vector [rad] by which targets are turned in what the task leaves open; unlike right angles, no arm's
 favourite."""
+
+
+def _keep_memory() -> None:
+    """Have memory that was used kept, up to a few times `KEPT`.
+
+    Fetching it anew for each block takes a third of a closed form's time. The GNU C library raises its threshold for
+    what it gives back when a great block is freed (mallopt(3)); one that nobody has written to costs nothing. Elsewhere
+    this does nothing.
+    """
+    memory = np.empty(KEPT, dtype=np.uint8)
+    del memory
+
+
+_keep_memory()
 
 
 def solve_block(
@@ -60,14 +77,16 @@ def solve_block(
     else:
         held = spread(analysis, limits[moving])
         if more:
-            held = spread(analysis, limits[moving], MORE_SAMPLES, start=HELD_SAMPLES)
+            held = np.concatenate(
+                [at_limits(analysis, limits[moving]), spread(analysis, limits[moving], MORE_SAMPLES, HELD_SAMPLES)]
+            )
         elif near is not None:
             first = np.zeros((1, analysis.solved.n))
             first[0, : len(moving)] = near[moving]
             held = np.concatenate([first, held])
         found, claims = _solve_held(analysis, T, held), unclaimed(len(T), SPREAD)
     found = Found(found.index, found.q[:, : len(moving)], found.position, found.angle)
-    if len(moving) and not analysis.redundancy and analysis.open:
+    if len(moving) and analysis.open:
         found = distinct(found, analysis.solved.revolute[: len(moving)], analysis.size)
     elif not len(moving):
         found = found.pick(np.unique(found.index, return_index=True)[1])
@@ -111,9 +130,11 @@ def complete_solutions(
     """
     chain = analysis.own
     found, doubt = solve_window(analysis, T)
-    closing = np.bincount(found.index, minlength=len(T))
+    # Nothing is added on the way from candidates to the list: where as many are left they are the same.
+    tried, m = doubt.candidates, len(found)
+    closing = tried if int(tried.sum()) == m else np.bincount(found.index, minlength=len(T))
     found, equal, close = distinct_and_close(found, chain.revolute, analysis.size)
-    count = np.bincount(found.index, minlength=len(T))
+    count = closing.copy() if len(found) == m else np.bincount(found.index, minlength=len(T))
     # Two that come out as one may have been two, so near to each other that Newton's steps led both to the same.
     doubt.certain[equal] = True
     doubt.certain |= count == 0
@@ -123,20 +144,29 @@ def complete_solutions(
         # The six joints may be singular where the arm's own are not.
         doubt.certain |= doubt.possible
     doubt.possible[close] = True
-    rows = np.flatnonzero((doubt.possible & ~doubt.certain)[found.index])
-    if len(rows):
-        least = least_singular_values(chain, found.q[rows], analysis.size)
+    possible = np.flatnonzero(doubt.possible & ~doubt.certain)
+    if len(possible):
+        rows = rows_of(possible, count)
         whole = count[found.index[rows]] == (analysis.number if chain.n == 6 else -1)
-        doubt.certain[found.index[rows[least < np.where(whole, TOLD_APART, SINGULAR)]]] = True
-    again = np.flatnonzero(doubt.certain & ~beyond_chain(chain, T, analysis.size))
+        least = np.where(whole, TOLD_APART, SINGULAR)
+        doubt.certain[found.index[rows[nearly_singular(chain, found.q[rows], analysis.size, least)]]] = True
+    again = np.flatnonzero(doubt.certain)
+    again = again[~beyond_chain(chain, T[again], analysis.size)]
     claims = Claims(np.full(len(T), COUNTED, dtype=np.int8), analysis.number, count)
-    claims.candidates, claims.duplicates = doubt.candidates, closing - count
+    claims.candidates, claims.duplicates = tried.copy(), closing - count
     claims.branches = not isinstance(analysis.solver, General)
     if not len(again):
         return found, claims
-    part = found.pick(doubt.certain[found.index])
-    part = Found(np.searchsorted(again, part.index), part.q, part.position, part.angle)
+    part = found.pick(rows_of(again, count))
+    part = Found(np.repeat(np.arange(len(again)), count[again]), part.q, part.position, part.angle)
     return replaced(found, claims, again, *look_again(analysis, T[again], part, rest, limits, near))
+
+
+def rows_of(targets: NDArray[np.intp], count: NDArray[np.intp]) -> NDArray[np.intp]:
+    """The places (s,) of some targets' configurations in a list by target, of which each target has `count` (m,)."""
+    numbers = count[targets]
+    first = (np.cumsum(count) - count)[targets]
+    return np.repeat(first - np.cumsum(numbers) + numbers, numbers) + np.arange(int(numbers.sum()))
 
 
 def _solve_held(analysis: Analysis, T: Array, held: Array) -> Found:
@@ -160,6 +190,18 @@ def _solve_held(analysis: Analysis, T: Array, held: Array) -> Found:
     for part in parts:
         found = merged(found, part)
     return found
+
+
+def at_limits(analysis: Analysis, limits: Array) -> Array:
+    """Values (k, n) for the joint outside the window at its limits, where it is one of the arm's own; none of more.
+
+    A piece within the limits on which it moves little is mostly one that its limits cut.
+    """
+    free = [i for i in range(analysis.solved.n) if not analysis.window.first <= i < analysis.window.last]
+    ends = limits[free[0]] if len(free) == 1 and free[0] < len(limits) else np.empty(0)
+    held = np.zeros((int(np.sum(np.isfinite(ends))), analysis.solved.n))
+    held[:, free[:1]] = ends[np.isfinite(ends), None]
+    return held
 
 
 def spread(analysis: Analysis, limits: Array, count: int = HELD_SAMPLES, start: int = 0) -> Array:

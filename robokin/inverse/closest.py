@@ -29,6 +29,7 @@ from robokin.inverse.position_first import (
     position_first,
 )
 from robokin.inverse.second_order import go_down
+from robokin.inverse.turn_in_place import turned_in_place
 from robokin.kinematics.chain import Chain
 
 Array = NDArray[np.float64]
@@ -190,6 +191,7 @@ def _search(ways: Ways, T: Array, x: Array, known: int, home: Array, opened: int
     found = on_limits(ways, many, found, LAST, 15, 25)
     found = nearer_still(ways, many, found, 40)
     found = at_the_edge(ways, many, found, LEAST, 20, 25)
+    found = better(found, turned_in_place(ways, many, found))
     move = _moves(ways.chain, found.x.T.reshape(m, count, n), home, own)
     best = _closest(found.distance.reshape(m, count), found.angle.reshape(m, count), move)
     return found.pick(best + count * np.arange(m))

@@ -53,6 +53,17 @@ several meet the residual may be tiny, yet singular values are smaller still."""
 APART = 1e-4
 """Solutions that differ by more in some joint [rad | size] are different."""
 
+OUT = 2.0
+"""|Im q| [rad | size] from which a candidate may be on its way to infinity, where Newton's steps go on for ever."""
+
+STILL, FAR_OUT = 1e-13, 7.0
+"""Residual up to which a candidate out there is at a solution, unless it is farther out than this: on the way to
+infinity residuals are that small from |Im q| near 10 only."""
+
+STEPS_ON = 1e-2
+"""A candidate that Newton's next step takes farther [rad | size] is on its way: such steps are of about 1/2, while
+rounding moves solutions by 1e-3 at most."""
+
 COMPARED = 4
 """Neighbours in the order of a generic sum of their coordinates that each candidate is compared with: equal ones
 stand side by side but for others whose sum agrees by chance, one in some thousand."""
@@ -88,6 +99,20 @@ def complex_refine(
             residual[part] = relative(axes, error, trace)
         refined[part] = q.T
     return refined, residual
+
+
+def on_the_way_out(loop: Loop, closing: NDArray[Any], index: Index, values: Complex, residual: Array) -> Mask:
+    """(s,) which candidates are no solutions but on the way to infinity, where residuals get as small as one likes.
+
+    What is regular there is not told by `SURE`: second derivatives grow with exp(|Im q|).
+    """
+    out = np.zeros(len(values), dtype=bool)
+    away = np.abs(values.imag).max(axis=1, initial=0.0)
+    rows = np.flatnonzero((residual <= CLOSED) & (away > OUT) & ((residual > STILL) | (away > FAR_OUT)))
+    if len(rows):
+        new, _ = complex_refine(loop, closing, index[rows], values[rows], 1)
+        out[rows] = np.abs(new - values[rows]).max(axis=1) > STEPS_ON
+    return out
 
 
 def regular_and_distinct(loop: Loop, index: Index, values: NDArray[Any], residual: Array) -> Mask:

@@ -22,12 +22,21 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.complex_newton import complex_refine, regular_and_distinct
+from robokin.inverse.complex_newton import complex_refine, on_the_way_out, regular_and_distinct
 from robokin.inverse.loop import Candidates, Loop
 from robokin.inverse.newton import closing_at, refine
 from robokin.inverse.raghavan_roth import PERTURBATION, SHIFT, SPLITS, STEEPEST, Elimination
 
-__all__ = ["SPLITS", "Counted", "Elimination", "choose_splits", "count_solutions", "generic_count", "rescue_candidates"]
+__all__ = [
+    "SPLITS",
+    "Counted",
+    "Elimination",
+    "choose_splits",
+    "count_solutions",
+    "elimination_of",
+    "generic_count",
+    "rescue_candidates",
+]
 
 Array = NDArray[np.float64]
 
@@ -71,6 +80,7 @@ def count_solutions(
     values = np.concatenate([np.asarray(part[1], dtype=np.complex128) for part in parts])
     values, residual = complex_refine(loop, closing, index, values, steps)
     residual[np.any(np.abs(values.imag[:, loop.revolute]) > STEEPEST, axis=1)] = np.inf
+    residual[on_the_way_out(loop, closing, index, values, residual)] = np.inf
     # Of a pair the one with the greater imaginary part in the first joint that has any stands for both.
     side = np.sign(np.where(np.abs(values.imag) > REAL, values.imag, 0.0))
     first = side[np.arange(len(side)), np.argmax(side != 0.0, axis=1)]
@@ -97,25 +107,45 @@ def choose_splits(loop: Loop, values: Array | None = None) -> list[int]:
     """
     generic, round_ = trial_poses(loop)
     generic = generic if values is None else values
+    closing = closing_at(loop, np.concatenate([generic, round_]))
     for splits in (ORDER, tuple(SPLITS + split for split in ORDER)):
-        found = {split: _count_of_split(loop, split, closing_at(loop, generic)) for split in splits}
+        numbers = {split: _numbers_of_split(loop, split, closing, len(generic)) for split in splits}
+        found = {split: int(number[: len(generic)].sum()) for split, number in numbers.items()}
         best = max(found.values())
         good = [split for split, count in found.items() if count > 0 and count >= WORTH * best]
         if good:
-            closing = closing_at(loop, round_)
-            more = {split: GENERIC * found[split] + _count_of_split(loop, split, closing) for split in good}
+            more = {split: GENERIC * found[split] + int(numbers[split][len(generic) :].sum()) for split in good}
             return sorted(good, key=lambda split: -more[split])
     return []
 
 
-def _count_of_split(loop: Loop, split: int, closing: Array) -> int:
-    """How many distinct regular complex solutions a split finds for some targets, all together."""
-    try:
-        real, complex_ = Elimination(loop, split).all_candidates(closing)
-    except np.linalg.LinAlgError:
-        return 0
-    parts = [(real.index, real.values), (complex_.index, complex_.values)]
-    return int(np.sum(count_solutions(loop, closing, parts, STEPS + 2 * (split >= SPLITS)).number))
+def _numbers_of_split(loop: Loop, split: int, closing: Array, generic: int) -> NDArray[np.intp]:
+    """How many distinct regular complex solutions a split finds for each of some targets, L6 (m, 4, 4).
+
+    The first `generic` ones are asked for alone where the others cannot be solved.
+    """
+    numbers = np.zeros(len(closing), dtype=np.intp)
+    for some in (closing, closing[:generic]):
+        try:
+            real, complex_ = elimination_of(loop, split).all_candidates(some)
+        except np.linalg.LinAlgError:
+            continue
+        parts = [(real.index, real.values), (complex_.index, complex_.values)]
+        numbers[: len(some)] = count_solutions(loop, some, parts, STEPS + 2 * (split >= SPLITS)).number
+        break
+    return numbers
+
+
+_built: WeakKeyDictionary[Loop, dict[tuple[int, float, float], Elimination]] = WeakKeyDictionary()
+
+
+def elimination_of(loop: Loop, split: int, shift: float = SHIFT, perturbation: float = PERTURBATION) -> Elimination:
+    """The elimination of a loop by one split, made when first asked for. Raises LinAlgError where there is none."""
+    kept = _built.setdefault(loop, {})
+    key = split, shift, perturbation
+    if key not in kept:
+        kept[key] = Elimination(loop, *key)
+    return kept[key]
 
 
 def generic_count(loop: Loop, splits: list[int]) -> int | None:
@@ -127,7 +157,7 @@ def generic_count(loop: Loop, splits: list[int]) -> int | None:
     parts = []
     for split in splits[:COUNTING]:
         try:
-            found = Elimination(loop, split).all_candidates(closing)
+            found = elimination_of(loop, split).all_candidates(closing)
         except np.linalg.LinAlgError:
             continue
         parts += [(part.index, part.values) for part in found]
@@ -147,8 +177,6 @@ RESCUE_STEPS = 20
 RESCUED = 1e-7
 """A candidate that closes no better [size and rad] after these steps leads nowhere."""
 
-_rescuers: WeakKeyDictionary[Loop, dict[tuple[int, float, float], Elimination]] = WeakKeyDictionary()
-
 
 def rescue_candidates(loop: Loop, splits: list[int], closing: Array) -> Candidates:
     """Candidates for doubtful poses L6 (m, 4, 4), found in several ways and refined on the true loop.
@@ -156,17 +184,13 @@ def rescue_candidates(loop: Loop, splits: list[int], closing: Array) -> Candidat
     Other splits and shifts go round roots at infinity and ones that coincide by chance, perturbed links round ones
     that coincide at the pose for good.
     """
-    kept = _rescuers.setdefault(loop, {})
     parts = []
     for which, shift, perturbation in RESCUES:
         split = splits[min(which, len(splits) - 1)]
         if perturbation:
             split = split % SPLITS + SPLITS
-        key = split, shift, perturbation or PERTURBATION
         try:
-            if key not in kept:
-                kept[key] = Elimination(loop, *key)
-            parts.append(kept[key].candidates(closing))
+            parts.append(elimination_of(loop, split, shift, perturbation or PERTURBATION).candidates(closing))
         except np.linalg.LinAlgError:
             continue
     if not parts:

@@ -1,9 +1,13 @@
-"""Error and Jacobian of a chain for few configurations at a time.
+"""Error and Jacobian of a chain for the configurations that curves are followed by: a handful, or some hundreds.
 
-Statement. The same as `numeric.error_and_jacobian`, for a handful of configurations.
+Statement. The same as `numeric.error_and_jacobian`, in less time.
 Derivation. A joint and the constant after it, J(q) C, are linear in (1, cos q, sin q, q): all joints' matrices come
-from one product, and n products of matrices (4, 4) follow. Columns kept apart, as in `kinematics.columns`, are faster
-for thousands of configurations; for ten of them the interpreter's share of the work is what counts.
+from one product, and n products of matrices (4, 4) follow. For ten configurations the interpreter's share of the work
+is what counts. For hundreds a joint mixes two columns of the frame before it, and the constant after it all four, of
+all configurations at once: one product of matrices (4, 4) and (4, 3 s). The columns entry by entry of
+`kinematics.columns` are for thousands; what they give for one configuration does not depend on the others.
+With the columns r_k of the rotation that is found and t_k of the one that is wished for the vector of the skew part of
+their difference is ½ Σ r_k × t_k.
 Degenerate case. None.
 """
 
@@ -14,13 +18,18 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.numeric import error_and_jacobian
 from robokin.kinematics.chain import Chain
 
 Array = NDArray[np.float64]
 
-FEW = 200
-"""Configurations up to which products of matrices take less time."""
+FEW = 80
+"""Configurations up to which a product of matrices for each takes less time."""
+
+TOGETHER = 1000
+"""Configurations at a time: their numbers stay in the second-level cache."""
+
+CROSS = ((1, 2), (2, 0), (0, 1))
+"""Entry k of a × b is a[i] b[j] - a[j] b[i]."""
 
 HALF_TURN = 1e-9
 """Sine of the angle error below which, with a negative cosine, the error is half a turn and has no direction here."""
@@ -46,9 +55,18 @@ def _joint_parts(chain: Chain) -> Array:
 
 def errors(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
     """The error (s, 6) and the Jacobian (s, 6, n) at q (s, n) against T (s, 4, 4), as `error_and_jacobian` has them."""
+    if len(q) <= FEW:
+        return _of_few(chain, T, q, size)
+    starts = range(0, len(q), TOGETHER)
+    parts = [_of_many(chain, T[i : i + TOGETHER], q[i : i + TOGETHER], size) for i in starts]
+    if len(parts) == 1:
+        return parts[0]
+    return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
+
+
+def _of_few(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
+    """`errors`, by a product of matrices for each configuration and joint."""
     s, n = q.shape
-    if s > FEW:
-        return error_and_jacobian(chain, T, q, size)
     values = (q + chain.offsets).T
     weights = np.empty((n, s, 4))
     weights[:, :, 0] = 1.0
@@ -62,27 +80,62 @@ def errors(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]
     z, o, end = axes[2], axes[3], F[-1]
     lever = (end[:, :3, 3].T[:, None] - o) / size
     J = np.empty((6, n, s))
-    for k, (a, b) in enumerate(((1, 2), (2, 0), (0, 1))):
+    for k, (a, b) in enumerate(CROSS):
         np.subtract(z[a] * lever[b], z[b] * lever[a], out=J[k])
     J[3:] = z
     if not chain.revolute.all():
         slides = ~chain.revolute
         J[:3, slides], J[3:, slides] = z[:, slides], 0.0
-    return _pose_error(T, end, size), J.transpose(2, 0, 1)
+    return _pose_error(T, end[:, :3].transpose(2, 1, 0), size), J.transpose(2, 0, 1)
 
 
-def _pose_error(T: Array, found: Array, size: float) -> Array:
-    """As `numeric.pose_error`."""
-    D = T[:, :3, :3] @ found[:, :3, :3].transpose(0, 2, 1)
-    e = np.empty((len(D), 6))
-    np.subtract(T[:, :3, 3], found[:, :3, 3], out=e[:, :3])
-    e[:, :3] /= size
-    w = e[:, 3:]
-    w[:, 0], w[:, 1], w[:, 2] = D[:, 2, 1] - D[:, 1, 2], D[:, 0, 2] - D[:, 2, 0], D[:, 1, 0] - D[:, 0, 1]
-    sine = 0.5 * np.sqrt((w * w).sum(axis=1))
-    cosine = 0.5 * (D[:, 0, 0] + D[:, 1, 1] + D[:, 2, 2] - 1.0)
-    w *= (0.5 * np.arctan2(sine, cosine) / np.maximum(sine, 1e-300))[:, None]
+def _of_many(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
+    """`errors`, by a product of matrices for each joint."""
+    s, n = q.shape
+    constants, revolute = chain.constants.transpose(0, 2, 1), chain.revolute.tolist()
+    values = (q + chain.offsets).T
+    cosine, sine = np.cos(values), np.sin(values)
+    X = np.empty((4, 3, s))
+    X[:] = constants[0, :, :3, None]
+    axes, turned = np.empty((2, 3, n, s)), np.empty((2, 3, s))
+    for i, turns in enumerate(revolute):
+        axes[:, :, i] = X[2:]
+        if turns:
+            np.multiply(X[:2], cosine[i], out=turned)
+            X[:2] *= sine[i]
+            turned[0] += X[1]
+            turned[1] -= X[0]
+            X[:2] = turned
+        else:
+            X[3] += values[i] * X[2]
+        X = (constants[i + 1] @ X.reshape(4, 3 * s)).reshape(4, 3, s)
+    z, lever = axes
+    np.subtract(X[3][:, None], lever, out=lever)
+    lever /= size
+    J = np.empty((6, n, s))
+    for k, (a, b) in enumerate(CROSS):
+        np.multiply(z[a], lever[b], out=J[k])
+        J[k] -= z[b] * lever[a]
+    J[3:] = z
+    if not all(revolute):
+        slides = ~chain.revolute
+        J[:3, slides], J[3:, slides] = z[:, slides], 0.0
+    return _pose_error(T, X, size), np.ascontiguousarray(J.transpose(2, 0, 1))
+
+
+def _pose_error(T: Array, X: Array, size: float) -> Array:
+    """As `numeric.pose_error`, for the columns (4, 3, s) of what was found."""
+    wish = T[:, :3].transpose(2, 1, 0)
+    e = np.empty((6, X.shape[2]))
+    np.subtract(wish[3], X[3], out=e[:3])
+    e[:3] /= size
+    w = e[3:]
+    for k, (a, b) in enumerate(CROSS):
+        np.subtract(X[:3, a] * wish[:3, b], X[:3, b] * wish[:3, a]).sum(axis=0, out=w[k])
+    sine = 0.5 * np.sqrt((w * w).sum(axis=0))
+    cosine = 0.5 * ((X[:3] * wish[:3]).sum(axis=(0, 1)) - 1.0)
+    w *= 0.5 * np.arctan2(sine, cosine) / np.maximum(sine, 1e-300)
     stuck = (sine < HALF_TURN) & (cosine < 0.0)
     if stuck.any():
-        w[stuck] = [np.pi, 0.0, 0.0]
-    return e
+        w[:, stuck] = np.array([np.pi, 0.0, 0.0])[:, None]
+    return np.ascontiguousarray(e.T)

@@ -117,14 +117,15 @@ def _least(J: Array) -> tuple[Array, Array, Array, Array]:
     U, _, Vt = np.linalg.svd(J)
     v = Vt[:, n - 1]
     B = brackets(J)
-    P = np.einsum("si,sj,sijk->sk", v, v, B)
+    both = (v[:, :, None] * v[:, None]).reshape(len(v), 1, n * n)
+    P = (both @ B.reshape(len(v), n * n, 6))[:, 0]
     # What is left of P(v) at right angles to the other columns' span, which the n - 1 greatest values belong to.
     left = U[:, :, n - 1 :]
     part = np.einsum("sck,skm->scm", left, np.einsum("skm,sk->sm", left, P)[:, :, None])[:, :, 0]
     bend = np.linalg.norm(part, axis=1)
     u = part / np.maximum(bend, 1e-300)[:, None]
     sigma = np.einsum("sk,skj,sj->s", u, J, v)
-    slope = np.einsum("sk,sijk,sj->si", u, B, v)
+    slope = np.einsum("sij,sj->si", (B.reshape(len(v), n * n, 6) @ u[:, :, None]).reshape(len(v), n, n), v)
     return u, sigma, slope, bend
 
 
@@ -135,56 +136,73 @@ def _solved(A: Array, b: Array) -> Array:
     return np.asarray((((b[:, None, :] @ U)[:, 0] * inverse)[:, None, :] @ Vt)[:, 0])
 
 
-def to_multiple_root(chain: Chain, T: Array, q: Array, size: float, null: int) -> Array | None:
-    """The configuration (n,) at which several solutions for T (4, 4) merge, near q (n,) [rad | m]; None for none.
+def to_multiple_roots(chain: Chain, T: Array, q: Array, size: float, null: int) -> tuple[Array, Flags]:
+    """The configurations (s, n) at which several solutions for T (s, 4, 4) merge, near q (s, n) [rad | m].
 
-    null: the dimension of the null space at q. The seed must not be on a self-motion.
+    null: the dimension of the null space at all q. The seeds must not be on a self-motion. Also (s,) whether such a
+    root was found; where none was, the configuration says nothing.
     """
     scale = scale_of(chain, size)
-    x, n = q / scale, chain.n
-    last = np.inf
+    seeds, n = q / scale, chain.n
+    x, found, last = seeds.copy(), np.ones(len(q), dtype=bool), np.full(len(q), np.inf)
+    on = np.arange(len(q))
     for _ in range(MULTIPLE_STEPS):
-        e, J = errors(chain, T[None], x[None], size)
-        U, V, level, slope = _level(J[0], null)
-        if null == 1:
-            third, third_slope = _third(chain, T, x, size, U, V)
-            level, slope = np.concatenate([level, third]), np.concatenate([slope, third_slope])
-        m = U.shape[1]
-        A = np.zeros((6 + len(level), n + m))
-        A[:6, :n], A[:6, n:], A[6:, :n] = J[0], -U, slope
-        step = np.linalg.lstsq(A, np.concatenate([e[0], -level]), rcond=CUT)[0]
-        x = x + step[:n]
-        length = float(np.max(np.abs(step[:n])))
-        if length > MULTIPLE_FAR or float(np.max(np.abs(x - q / scale))) > MULTIPLE_FAR:
-            return None
-        if length < 1e-14 or (length < 1e-11 and length >= 0.5 * last):
+        if not len(on):
             break
-        last = length
-    e, J = errors(chain, T[None], x[None], size)
-    _, _, level, _ = _level(J[0], null)
-    exact = float(np.max(np.abs(e))) <= DOUBLE and float(np.max(np.abs(level))) <= DOUBLE
-    return x * scale if exact else None
+        e, J = errors(chain, T[on], x[on], size)
+        U, V, level, slope = _level(J, null)
+        if null == 1:
+            third, third_slope = _third(chain, T[on], x[on], size, U, V)
+            level, slope = np.concatenate([level, third], axis=1), np.concatenate([slope, third_slope], axis=1)
+        A = np.zeros((len(on), 6 + level.shape[1], n + U.shape[2]))
+        A[:, :6, :n], A[:, :6, n:], A[:, 6:, :n] = J, -U, slope
+        step = _shortest(A, np.concatenate([e, -level], axis=1))[:, :n]
+        x[on] += step
+        length = np.max(np.abs(step), axis=1)
+        away = np.max(np.abs(x[on] - seeds[on]), axis=1)
+        found[on] = ~((length > MULTIPLE_FAR) | (away > MULTIPLE_FAR))
+        arrived = (length < 1e-14) | ((length < 1e-11) & (length >= 0.5 * last[on]))
+        last[on] = length
+        on = on[found[on] & ~arrived]
+    rows = np.flatnonzero(found)
+    if not len(rows):
+        return x * scale, found
+    e, J = errors(chain, T[rows], x[rows], size)
+    level = _level(J, null)[2]
+    found[rows] = np.maximum(np.max(np.abs(e), axis=1), np.max(np.abs(level), axis=1)) <= DOUBLE
+    return x * scale, found
+
+
+def _shortest(A: Array, b: Array) -> Array:
+    """Least squares for A (s, k, n), singular values below `CUT` of the greatest left out."""
+    U, values, Vt = np.linalg.svd(A, full_matrices=False)
+    kept = np.where(values > CUT * values[:, :1], 1.0 / np.maximum(values, 1e-300), 0.0)
+    return np.asarray((((b[:, None, :] @ U)[:, 0] * kept)[:, None, :] @ Vt)[:, 0])
 
 
 def _level(J: Array, null: int) -> tuple[Array, Array, Array, Array]:
-    """U (6, m), V (n, null), the values u_aᵀ J v_b (m · null,) and their slopes (m · null, n)."""
-    n = J.shape[1]
+    """U (s, 6, m), V (s, n, null), the values u_aᵀ J v_b (s, m · null) and their slopes (s, m · null, n)."""
+    s, _, n = J.shape
     left, _, Vt = np.linalg.svd(J)
-    U, V = left[:, n - null :], Vt[n - null :].T
-    slope = np.einsum("ka,ijk,jb->abi", U, brackets(J), V)
-    return U, V, (U.T @ J @ V).reshape(-1), slope.reshape(-1, n)
+    U, V = left[:, :, n - null :], np.swapaxes(Vt[:, n - null :], 1, 2)
+    # u_a · [S_i, S_j] v_b
+    slope = (brackets(J).reshape(s, n * n, 6) @ U).reshape(s, n, n, -1)
+    slope = np.einsum("sija,sjb->sabi", slope, V)
+    return U, V, (np.swapaxes(U, 1, 2) @ J @ V).reshape(s, -1), slope.reshape(s, -1, n)
 
 
 def _third(chain: Chain, T: Array, x: Array, size: float, U: Array, V: Array) -> tuple[Array, Array]:
-    """u_aᵀ P(v) (m,) for one null vector, and its slope (m, n) by differences."""
-    n = len(x)
-    around = np.concatenate([x[None], x + DIFFERENCE * np.eye(n), x - DIFFERENCE * np.eye(n)])
-    _, J = errors(chain, np.broadcast_to(T, (2 * n + 1, 4, 4)), around, size)
+    """u_aᵀ P(v) (s, m) for one null vector, and its slopes (s, m, n) by differences."""
+    s, n = x.shape
+    moved = DIFFERENCE * np.concatenate([np.zeros((1, n)), np.eye(n), -np.eye(n)])
+    around = (x[:, None] + moved).reshape(-1, n)
+    _, J = errors(chain, np.repeat(T, 2 * n + 1, axis=0), around, size)
     # The null vector of each, and a left one that varies with it as little as can be.
     left, _, Vt = np.linalg.svd(J)
-    v = Vt[:, n - 1] * np.sign(Vt[:, n - 1] @ V[:, 0])[:, None]
+    v = Vt[:, n - 1]
+    v = v * np.sign(np.einsum("si,si->s", v, np.repeat(V[:, :, 0], 2 * n + 1, axis=0)))[:, None]
     kept = left[:, :, n - 1 :]
-    u = kept @ (np.swapaxes(kept, 1, 2) @ U)
-    P = np.einsum("si,sj,sijk->sk", v, v, brackets(J))
-    value = np.einsum("ska,sk->sa", u, P)
-    return value[0], np.asarray((value[1 : n + 1] - value[n + 1 :]).T / (2.0 * DIFFERENCE))
+    u = kept @ (np.swapaxes(kept, 1, 2) @ np.repeat(U, 2 * n + 1, axis=0))
+    P = ((v[:, :, None] * v[:, None]).reshape(len(v), 1, n * n) @ brackets(J).reshape(len(v), n * n, 6))[:, 0]
+    value = np.einsum("ska,sk->sa", u, P).reshape(s, 2 * n + 1, -1)
+    return value[:, 0], np.swapaxes(value[:, 1 : n + 1] - value[:, n + 1 :], 1, 2) / (2.0 * DIFFERENCE)

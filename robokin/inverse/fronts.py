@@ -17,6 +17,8 @@ Here x are joint values [rad | size] and lengths are in the arm's size.
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -251,10 +253,17 @@ class Fronts:
             points[-1], tangents[-1] = points[0] + turns, tangents[0]
         return points, tangents
 
+    @cached_property
+    def _sides(self) -> tuple[Array, Array, Index]:
+        """The points and tangents of all fronts that have come to their ends, and where each front's begin."""
+        every = np.arange(2 * self.s)
+        rows = np.concatenate([every, *(rows for rows, _, _ in self.history)])
+        order = np.argsort(rows, kind="stable")
+        x = np.concatenate([self.seeds[0], *(x for _, x, _ in self.history)])[order]
+        t = np.concatenate([self.seeds[1], *(t for _, _, t in self.history)])[order]
+        return x, t, np.searchsorted(rows[order], np.arange(2 * self.s + 1))
+
     def _side(self, row: int) -> tuple[Array, Array]:
         """The points and tangents of a front, the seed first."""
-        parts = [(x[rows == row], t[rows == row]) for rows, x, t in self.history]
-        x, t = self.seeds
-        return np.concatenate([x[row, None], *(p[0] for p in parts)]), np.concatenate(
-            [t[row, None], *(p[1] for p in parts)]
-        )
+        x, t, first = self._sides
+        return x[first[row] : first[row + 1]], t[first[row] : first[row + 1]]

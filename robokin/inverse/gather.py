@@ -62,21 +62,30 @@ there is then looked at closely."""
 
 
 class Marks:
-    """Which of m targets have an axis that is nearly free (`near`), or an equation that says nothing (`loose`)."""
+    """Which of m targets have an axis that is nearly free (`near`), or an equation that says nothing (`loose`).
+
+    wrist: those where a spherical triple's first and last axis are nearly one, so that these two may turn against each
+    other; where nothing else is marked there are no more self-motions than that one on each branch.
+    """
 
     def __init__(self, m: int) -> None:
         self.near = np.zeros(m, dtype=bool)
         self.loose = np.zeros(m, dtype=bool)
+        self.wrist = np.zeros(m, dtype=bool)
 
-    def short(self, x: Entry, y: Entry, index: Index) -> None:
+    def short(self, x: Entry, y: Entry, index: Index, wrist: bool = False) -> None:
         """Mark the targets index (k,) where a lever (x, y) (…, k) is short on some branch."""
         square = np.asarray(plus(times(x, x), times(y, y)))
         if square.ndim == 0:
             return  # of the arm, not of a target
-        short = square < LEVER**2
-        if short.any():
-            self.near[index] |= short.reshape(-1, short.shape[-1]).any(axis=0)
+        # The least is found in half the time that comparing all takes; what is no number is none.
+        if not square.min(initial=np.inf) >= LEVER**2:
+            short = square < LEVER**2
+            marked = self.wrist if wrist else self.near
+            marked[index] |= short.reshape(-1, short.shape[-1]).any(axis=0)
 
-    def on(self, found: Candidates) -> Candidates:
-        """The candidates with the marks."""
-        return Candidates(found.index, found.values, found.leaves, self.near, self.loose)
+    def on(self, found: Candidates, determined: bool = False) -> Candidates:
+        """The candidates with the marks; determined: whether each joint whose value may be free is marked."""
+        near = self.near | self.wrist
+        few = ~(self.near | self.loose) if determined else None
+        return Candidates(found.index, found.values, found.leaves, near, self.loose, few)

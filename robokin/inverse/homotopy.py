@@ -16,13 +16,13 @@ Mathematics and Computation 29 (1989).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.complex_newton import Complex, Index, Mask, complex_refine, distinct, regular
+from robokin.inverse.complex_newton import Complex, Index, Mask, complex_refine, distinct, jacobian, regular
 from robokin.inverse.loop import Loop
 from robokin.inverse.monodromy import Known, Start, another_start, started, two_starts
 from robokin.inverse.newton import refine
@@ -72,6 +72,21 @@ there on its way to somewhere else would have passed the target where it is infi
 POLISH = 4
 """Newton steps for ends; from 1e-3, where paths that passed close to a singular solution may have been left, and
 less."""
+
+NEARLY_SINGULAR, EXACT = 2e-8, 2e-15
+"""Least singular value and greatest relative residual at which an end that is not regular is still a solution of its
+own. Rounding leaves some 3e-16 of it."""
+
+FINE_POLISH = 14
+"""Newton steps for such ends: from 3e-6, where a path to two solutions that nearly meet is left, each halves the
+distance until it is about as great as that between the two."""
+
+ROUNDING = 2e-14
+"""Such ends that differ by less than this over their least singular value [rad | size] are one. Of a double solution
+rounding makes two ends with a least singular value s of some 4e-8, which are about s apart: a tenth of this over s."""
+
+NEAR_REAL_AXIS = 2.0
+"""|Im q| [rad | size] up to which such ends are looked for: farther out rounding grows."""
 
 STEPS = 25
 """Newton steps for the real parts of singular ends: each but halves the error at a double solution."""
@@ -123,7 +138,9 @@ class Account:
 @dataclass(frozen=True, eq=False)
 class _Ends:
     """Where the paths (s,) from one start end: the target of each, its values (s, 6) [rad | size], and whether these
-    are a regular solution, a singular one, at infinity, or where it was lost on the way."""
+    are a regular solution, a singular one, at infinity, or where it was lost on the way; fine: those that are known to
+    be solutions of their own, with their values and how far apart from others they must be: regular ones, and singular
+    ones that Newton's steps tell apart."""
 
     target: Index
     values: Complex
@@ -131,6 +148,13 @@ class _Ends:
     singular: Mask
     infinite: Mask
     lost: Mask
+    fine: Mask
+    fine_values: Complex
+    fine_apart: Array
+
+    def part(self, part: slice) -> _Ends:
+        """Some of them."""
+        return _Ends(*(getattr(self, one.name)[part] for one in fields(self)))
 
 
 class Homotopy:
@@ -207,26 +231,59 @@ class Homotopy:
         infinite = ~whole & gone & (ends.speed > SPEED)
         lost = ~whole & ~infinite & (ends.lost | (ends.u > NEAR))
         singular = ~whole & ~infinite & ~lost
-        parts = [slice(k * N * len(chosen), (k + 1) * N * len(chosen)) for k in range(len(every))]
-        return [_Ends(target[p], values[p], whole[p], singular[p], infinite[p], lost[p]) for p in parts]
+        fine = _told_apart(loop, closing, target, values, whole, np.flatnonzero(singular & (ends.u < LATE)))
+        everything = _Ends(target, values, whole, singular, infinite, lost, *fine)
+        return [everything.part(slice(k * N * len(chosen), (k + 1) * N * len(chosen))) for k in range(len(every))]
+
+
+def _told_apart(
+    loop: Loop, closing: Array, target: Index, values: Complex, whole: Mask, rows: Index
+) -> tuple[Mask, Complex, Array]:
+    """Which ends (s,) are known to be solutions of their own, their values (s, 6) and `_apart` of each.
+
+    whole: (s,) the regular ones; rows: (k,) those that may be so close to others that they are not called regular.
+    """
+    fine, exact, apart = whole.copy(), values.copy(), _apart(values)
+    rows = rows[np.abs(values[rows].imag).max(axis=1, initial=0.0) < NEAR_REAL_AXIS]
+    refined, residual = complex_refine(loop, closing, target[rows], values[rows], FINE_POLISH)
+    moved = np.abs(refined - values[rows]).max(axis=1, initial=0.0)
+    sure = regular(loop, refined, np.zeros(len(rows)), NEARLY_SINGULAR) & (residual < EXACT) & (moved < MOVED)
+    rows = rows[sure]
+    fine[rows], exact[rows] = True, refined[sure]
+    if len(rows):
+        least = np.linalg.svd(jacobian(loop, np.ascontiguousarray(exact[rows].T)), compute_uv=False)[:, -1]
+        apart[rows] = ROUNDING / least
+    return fine, exact, apart
 
 
 def _judged(loop: Loop, count: int, m: int, tried: list[_Ends]) -> Account:
     """The account of m targets from the ends of several starts of `count` paths each."""
     sound = np.stack([_sound(loop, m, ends) for ends in tried])
-    target, values = _united(loop, tried)
+    target, values, _ = _united(loop, tried, "regular")
     number = np.bincount(target, minlength=m)
     found = np.stack([_number(m, ends.target, ends.regular) for ends in tried])
     agrees = sound & (found == number)
+    real = np.abs(values.imag).max(axis=1, initial=0.0) < REAL
     whole = number == count
+    if not whole.all():
+        # Where singular ends, told apart, make it all N, these are all.
+        fine_target, fine_values, apart = _united(loop, tried, "fine")
+        told = ~whole & (np.bincount(fine_target, minlength=m) == count)
+        kept, more = ~told[target], told[fine_target]
+        near_real = 2.0 * np.abs(fine_values.imag).max(axis=1, initial=0.0) < apart
+        target, values = np.append(target[kept], fine_target[more]), np.append(values[kept], fine_values[more], axis=0)
+        real, whole = np.append(real[kept], near_real[more]), whole | told
+        number = np.where(told, count, number)
     best, every = np.argmax(agrees, axis=0), np.arange(m)
 
     def of_one_start(kind: str) -> Counts:
         numbers = np.stack([_number(m, ends.target, getattr(ends, kind)) for ends in tried])[best, every]
         return np.asarray(np.where(whole, 0, numbers))
 
-    real = np.abs(values.imag).max(axis=1, initial=0.0) < REAL
-    singular = [ends.singular & (np.abs(ends.values.imag).max(axis=1, initial=0.0) < NEARLY_REAL) for ends in tried]
+    singular = [
+        ends.singular & ~whole[ends.target] & (np.abs(ends.values.imag).max(axis=1, initial=0.0) < NEARLY_REAL)
+        for ends in tried
+    ]
     return Account(
         count,
         target[real],
@@ -242,13 +299,16 @@ def _judged(loop: Loop, count: int, m: int, tried: list[_Ends]) -> Account:
     )
 
 
-def _united(loop: Loop, tried: list[_Ends]) -> tuple[Index, Complex]:
-    """The regular ends from all starts, and their conjugates, each once: targets (s,) and values (s, 6)."""
-    target = np.concatenate([ends.target[ends.regular] for ends in tried])
-    values = np.concatenate([ends.values[ends.regular] for ends in tried])
-    target, values = np.concatenate([target, target]), np.concatenate([values, values.conj()])
-    once = distinct(loop, target, values, _apart(values))
-    return target[once], values[once]
+def _united(loop: Loop, tried: list[_Ends], which: str) -> tuple[Index, Complex, Array]:
+    """The ends of one kind from all starts, and their conjugates, each once: targets (s,), values (s, 6) and how far
+    each must be from others (s,)."""
+    kind = [getattr(ends, which) for ends in tried]
+    target = np.concatenate([ends.target[mine] for ends, mine in zip(tried, kind, strict=True)])
+    values = np.concatenate([ends.fine_values[mine] for ends, mine in zip(tried, kind, strict=True)])
+    apart = np.concatenate([ends.fine_apart[mine] for ends, mine in zip(tried, kind, strict=True)])
+    target, values, apart = np.tile(target, 2), np.concatenate([values, values.conj()]), np.tile(apart, 2)
+    once = distinct(loop, target, values, apart)
+    return target[once], values[once], apart[once]
 
 
 def _sound(loop: Loop, m: int, ends: _Ends) -> Mask:

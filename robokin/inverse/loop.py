@@ -49,7 +49,9 @@ class Candidates:
 
     index: (s,) the target in the block that each candidate is for; values: (s, 6) the arguments of
     J1 … J6 [rad | size], joint offsets included. Of a closed form: leaves, how many roots its equations have in all,
-    real or not; near, loose: (m,) the targets where an axis is nearly free, or an equation says nothing.
+    real or not; near, loose: (m,) the targets where an axis is nearly free, or an equation says nothing; few: (m,)
+    those at which the equations leave finitely many solutions, but for the self-motions of straight wrists, each on a
+    branch of its own. None where that is not told.
     """
 
     index: NDArray[np.intp]
@@ -57,6 +59,7 @@ class Candidates:
     leaves: int | None = None
     near: NDArray[np.bool_] | None = None
     loose: NDArray[np.bool_] | None = None
+    few: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from robokin.inverse.curve_tracing import Curve
 from robokin.inverse.nearest_member import member_near, nearest_on
-from robokin.inverse.null_motion import ZERO
+from robokin.inverse.null_motion import ZERO, errors
 from robokin.inverse.numeric import error_and_jacobian
 from robokin.inverse.self_motion import classify
 from robokin.inverse.solution_sets import families
@@ -43,6 +43,13 @@ NEIGHBOURS = 2e-3
 a self-motion such a root may be and still belong to it, where the error hardly grows at right angles to it."""
 
 
+NEXT = 1e-5
+"""Two solutions that are nearer [rad | size] are one if the pose midway between them is the target but for `MIDWAY`."""
+
+MIDWAY = 2e-13
+"""What the pose is then off by at most [size and rad]: some hundred times its rounding. Two roots of a common fold that
+are 1e-6 apart are off by as much midway; joint values are not known better."""
+
 SLOW = 1e-3
 """Least singular value below which Newton's steps may stall on the way to a root."""
 
@@ -52,6 +59,10 @@ BESIDE = 2e-3
 CROWDED = 0.3
 """Distance [rad | size] of singular solutions below which one may lead to the other: self-motions are followed by steps
 of up to 0.2, and one that is smaller looks like roots."""
+
+FLAT = 1e-12
+"""Error [size and rad] up to which a curve that could not be followed to its end has no solutions to be told apart:
+where it is so small over `CROWDED`, its slope is below what rounding of the pose makes of a solution's place."""
 
 FEW = 4
 """Solutions that may stand alone in a valley; of a set that could not be followed any number would settle."""
@@ -77,18 +88,18 @@ def listed_once(
     limits: Array,
     rest: Array,
     near: Array | None,
-) -> tuple[Found, dict[int, list[Motion]], Index]:
+) -> tuple[Found, dict[int, list[Motion]], Index, Index]:
     """Solutions (s, n) of targets T (m, 4, 4), sorted, with each self-motion and each multiple root once.
 
     limits: (n, 2) [rad | m]; rest: (n,) the wish where there is no `near` (n,). Also the self-motions of each target,
     and the targets (k,) of which a solution is singular and neither double nor on a self-motion: others may be so near
-    to it that they were not told apart.
+    to it that they were not told apart; and how many (m,) were left out beside another one, as if the two were double.
     """
     least = least_singular_values(chain, found.q, size)
     found, least = _thinned(chain, found, least, size)
     singular = np.flatnonzero(least < ZERO)
     if not len(singular):
-        return found, {}, np.empty(0, dtype=np.intp)
+        return found, {}, np.empty(0, dtype=np.intp), np.zeros(len(T), dtype=np.intp)
     q, index = found.q.copy(), found.index
     position, angle = found.position.copy(), found.angle.copy()
     local = classify(chain, T[index[singular]], q[singular], size)
@@ -112,7 +123,8 @@ def listed_once(
                 continue
             if any(part.ended == "lost" for part in curve.sheets or (curve,)):
                 lost.append(i)
-                if np.sum(np.maximum(position[members] / size, angle[members]) <= SETTLED) <= FEW:
+                settled = np.sum(np.maximum(position[members] / size, angle[members]) <= SETTLED)
+                if settled <= FEW and not _flat(chain, T[i], curve, size):
                     # No set of solutions but a valley, in which the error nearly vanishes: what settled is alone.
                     sets.of[mine[sets.of[mine] == number]] = -1
                     continue
@@ -134,13 +146,15 @@ def listed_once(
     off[stands] = 0.0
     keep[_stalled(index, keep, least, off)] = False
     rows = np.setdiff1d(np.flatnonzero(keep & np.isin(index, index[singular[alone]])), stands)
-    keep[_again(chain, index, q, rows, size, least)] = False
+    again, beside = _again(chain, T, index, q, rows, size, least)
+    keep[again] = False
     keep[_on_motions(chain, index, q, rows, size, least, motions)] = False
     crowded = _crowded(chain, index, q, singular[alone & keep[singular] & (least[singular] < ZERO)], size)
     return (
         Found(index, q, position, angle).pick(keep),
         motions,
         np.unique(np.concatenate([unclear, crowded, np.array([*lost, *sets.open], dtype=np.intp)])),
+        np.bincount(index[beside], minlength=len(T)),
     )
 
 
@@ -255,20 +269,40 @@ def _closes(chain: Chain, T: Array, q: Array, size: float) -> bool:
     return float(max(np.linalg.norm(error[:3]), np.linalg.norm(error[3:]))) <= CLOSES
 
 
-def _again(chain: Chain, index: Index, q: Array, rows: Index, size: float, least: Array) -> Index:
-    """Which of some rows are the same multiple root as another one of their target."""
+def _flat(chain: Chain, T: Array, curve: Curve, size: float) -> bool:
+    """Whether the pose hardly leaves T (4, 4) along a long piece of a curve that ends somewhere."""
+    off = np.max(np.abs(errors(chain, np.broadcast_to(T, (len(curve.x), 4, 4)), curve.x, size)[0]), axis=1)
+    pieces = np.split(curve.x, np.flatnonzero(off > FLAT))
+    return any(float(np.max(np.ptp(piece[1:], axis=0))) >= CROWDED for piece in pieces if len(piece) > 2)
+
+
+def _again(
+    chain: Chain, T: Array, index: Index, q: Array, rows: Index, size: float, least: Array
+) -> tuple[Index, Index]:
+    """Which of some rows are the same root as another one of their target, T: (m, 4, 4) being the targets.
+
+    Also which of these are roots of their own, but so near to another one that joint values hardly tell them apart.
+    """
     scale = np.where(chain.revolute, 1.0, size)
-    again = []
+    again, beside = [], []
     for target in np.unique(index[rows]):
         mine = rows[index[rows] == target]
         mine = mine[np.argsort(least[mine], kind="stable")]
         for k in range(1, len(mine)):
             gap = (q[mine[:k]] - q[mine[k]]) / scale
-            gap = np.where(chain.revolute, gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi)), gap)
+            gap = np.where(chain.revolute, gap - TURN * np.round(gap / TURN), gap)
+            distance = np.max(np.abs(gap), axis=1)
             multiple = np.maximum(least[mine[:k]], least[mine[k]]) < UNRESOLVED
-            if np.any(multiple & (np.max(np.abs(gap), axis=1) < NEIGHBOURS)):
+            same = multiple & (distance < NEIGHBOURS)
+            next_to = np.flatnonzero(~same & (distance < NEXT))
+            midway = q[mine[k]] / scale + 0.5 * gap[next_to]
+            off = errors(chain, np.broadcast_to(T[target], (len(midway), 4, 4)), midway, size)[0]
+            next_to = next_to[np.max(np.abs(off), axis=1, initial=0.0) <= MIDWAY]
+            if np.any(same) or len(next_to):
                 again.append(mine[k])
-    return np.array(again, dtype=np.intp)
+            if len(next_to) and not np.any(same):
+                beside.append(mine[k])
+    return np.array(again, dtype=np.intp), np.array(beside, dtype=np.intp)
 
 
 def _crowded(chain: Chain, index: Index, q: Array, rows: Index, size: float) -> Index:

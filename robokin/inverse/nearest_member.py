@@ -40,11 +40,14 @@ STRAIGHT = 1e-6
 LINE_STEP = 0.3
 """How far [rad | size] a straight curve is looked at from one of its points: they are 0.15 apart."""
 
-LINE_ROUNDS = 90
-"""Thirds that are left out: 1e-16 of the way remains."""
+LINE_CUTS, LINE_ROUNDS = 32, 13
+"""Parts that it is cut into in each round, of which two remain: 1e-16 of the way in the end."""
 
 OTHERS = 1e-7
 """Weight of the other joints' moves: it shifts the greatest move by less than anyone asks for."""
+
+STILL = 1e-12
+"""Differences of the greatest move below this [rad | size] are rounding of joints that stand still."""
 
 WALK = 25
 """Steps of a walk towards a wish on a surface at most."""
@@ -101,25 +104,18 @@ def member_near(curve: Curve, chain: Chain, T: Array, wish: Array, limits: Array
 def _on_line(track: Track, best: int, wish: Array) -> Array | None:
     """The point (n,) within the limits nearest to the wish (own,) beside point `best` of a straight curve.
 
-    None for another curve. The greatest move along a line is a convex function: three points tell which third to
-    leave out.
+    None for another curve. The greatest move along a line is a convex function: it is least beside the least of some
+    points. The point itself is the middle one of them.
     """
     t = track.tangents[best]
     if len(track.points) < 3 or np.max(np.abs(track.tangents - t)) > STRAIGHT:
         return None
-    low, high = -LINE_STEP, LINE_STEP
+    low, high, cuts = -LINE_STEP, LINE_STEP, np.linspace(0.0, 1.0, LINE_CUTS + 1)
     for _ in range(LINE_ROUNDS):
-        parts = np.array([low + (high - low) / 3.0, high - (high - low) / 3.0])
-        x = track.points[best] + parts[:, None] * t
-        far = np.where(track.is_inside(x), moves(track, x, wish), np.inf)
-        if not np.isfinite(far).any():
-            # Beyond the limits on this side: back to the point, which is within them.
-            low, high = 0.5 * low, 0.5 * high
-        elif far[0] <= far[1]:
-            high = parts[1]
-        else:
-            low = parts[0]
-    x = track.points[best] + 0.5 * (low + high) * t
+        parts = low + (high - low) * cuts
+        rows = track.points[best] + parts[:, None] * t
+        i = int(np.argmin(np.where(track.is_inside(rows), moves(track, rows, wish), np.inf)))
+        low, high, x = parts[max(i - 1, 0)], parts[min(i + 1, LINE_CUTS)], rows[i]
     e, _ = errors(track.chain, track.T[None], x[None], track.size)
     return x if track.is_inside(x[None])[0] and float(np.max(np.abs(e))) <= REACHES else None
 
@@ -155,10 +151,18 @@ def nearest_turns(track: Track, x: Array, wish: Array) -> Array:
 def moves(track: Track, x: Array, wish: Array) -> Array:
     """(m,) the greatest joint move from the wish (own,) to x (m, n), angles turned as near as the limits allow.
 
-    Of members with the same greatest move that one counts as nearer whose other joints move less.
+    It is given less that of the joints that stand still: where that is the greatest the rest has all its digits. Of
+    members with the same greatest move that one counts as nearer whose other joints move less.
     """
-    gap = nearest_turns(track, x, wish)[:, : len(wish)] - wish
-    return np.asarray(np.max(np.abs(gap), axis=1) + OTHERS * np.linalg.norm(gap, axis=1))
+    own = len(wish)
+    gap = np.abs(nearest_turns(track, x, wish)[:, :own] - wish)
+    still = track.still[:own]
+    least = 0.0
+    if still.any():
+        least = float(np.max(np.abs(nearest_turns(track, track.points[:1], wish)[0, :own] - wish)[still]))
+    greatest = np.max(gap, axis=1) - least
+    greatest[np.abs(greatest) < STILL] = 0.0
+    return np.asarray(greatest + OTHERS * np.linalg.norm(gap, axis=1))
 
 
 def _nearest_of_pieces(track: Track, wish: Array) -> Array | None:

@@ -70,9 +70,9 @@ def descend(
     x = q / scale
     low, high = (np.full(chain.n, -np.inf), np.full(chain.n, np.inf)) if limits is None else (limits / scale[:, None]).T
     x = np.clip(x, low, high)
-    best, least = x.copy(), np.full(len(x), np.inf)
-    error = np.zeros((len(x), 6))
-    identity = np.eye(chain.n)
+    ends, errors = x.copy(), np.zeros((len(x), 6))
+    best, least, error = x.copy(), np.full(len(x), np.inf), np.zeros((len(x), 6))
+    on, identity = np.arange(len(x)), np.eye(chain.n)
     # Lengths in the longest slide: what rounding leaves of positions would outweigh the errors of orientation.
     far = np.max(np.abs(x[:, ~chain.revolute]), axis=1, initial=1.0)[:, None]
     unit, long = np.where(chain.revolute, 1.0, far), far[:, 0] > LONG
@@ -86,8 +86,15 @@ def descend(
         best[better], least[better], error[better] = x[better], squared[better], e[better]
         # What has arrived stays: where a row ends must not depend on the others.
         done = least * far[:, 0] ** 2 < ARRIVED
-        if step == steps or done.all():
-            break
+        if step == steps or 3 * np.count_nonzero(done) >= len(done):
+            ends[on], errors[on, :3], errors[on, 3:] = best, error[:, :3] * far, error[:, 3:]
+            rest = ~done
+            if step == steps or not rest.any():
+                break
+            # Those that have arrived cost no more time.
+            on, T, x, best, least, error = on[rest], T[rest], x[rest], best[rest], least[rest], error[rest]
+            far, unit, long, done = far[rest], unit[rest], long[rest], done[rest]
+            e, J, squared = e[rest], J[rest], squared[rest]
         gradient = np.einsum("sij,si->sj", J, e)
         # A joint at its limit that the gradient pushes outwards takes no part.
         held = ((x <= low) & (gradient < 0.0)) | ((x >= high) & (gradient > 0.0))
@@ -102,5 +109,4 @@ def descend(
         dx *= (STEP / np.maximum(np.max(np.abs(dx), axis=1), STEP))[:, None]
         dx[done] = 0.0
         x = np.clip(x + dx * unit, low, high)
-    error[:, :3] *= far
-    return best * scale, error
+    return ends * scale, errors

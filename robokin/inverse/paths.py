@@ -7,9 +7,10 @@ is complex. On it X = J1 L1 … J6 L6 stays I where S q' = -b, b being the twist
 ω = 2 (r* r') / r·r and Rᵀp'. From a start in general position the line misses, with probability one, the complex
 targets at which solutions meet: only at its end two paths can. Each step predicts by the cubic through the last two
 points and their tangents and corrects by two Newton steps.
-Degenerate case. Where a path ends in a singular solution q goes like a root of u, and where it leads to infinity an
-angle goes like i k log u: steps in proportion to u follow both, and u times the speed tells them apart, as it vanishes
-for the one and tends to |k| for the other.
+Degenerate case. Where a path ends in a singular solution q goes like a root of u, mostly the second, and where it leads
+to infinity an angle goes like i k log u. Steps are steps in s, u = s²: in s a double solution's path is smooth, and
+steps in proportion to s follow all others. u times the speed in u tells them apart, as it vanishes at a solution and
+tends to |k| at infinity.
 Reference. C. Wampler, A. Morgan, "Solving the 6R inverse position problem using a generic-case solution methodology",
 Mechanism and Machine Theory 26 (1991).
 
@@ -28,8 +29,11 @@ from robokin.inverse.loop import Loop
 
 Array = NDArray[np.float64]
 
-FIRST = 0.03
-"""Length of a path's first step in u: nothing but the tangent is known there."""
+ROOTS = 2
+"""u = s²: at the end of a path on which two solutions meet q is then a power series in s."""
+
+FIRST = 0.015
+"""Length of a path's first step in s: nothing but the tangent is known there."""
 
 OFF = 5e-2
 """Greatest first correction of a step [rad | size]: the prediction is then closer to its own path than to others."""
@@ -41,9 +45,17 @@ CONTRACTS = 0.1
 """Greatest ratio of the second correction to the first. Newton's steps contract by the ratio of the distance from the
 solution to that from other solutions: so much for the chance of being drawn to another path."""
 
+BESIDE = 0.05
+"""Greatest second correction [rad | size] as a part of s, which is about how far apart two solutions are that meet at
+the end: the first correction may be mostly in other directions, and then its ratio says nothing."""
+
 NOISE = 1e-7
 """Second corrections below this [rad | size] need not be smaller than the first: near a singular end, where S has
 singular values of 1e-8, rounding is as large."""
+
+EXACT = 1e-12
+"""The same of a step to the end itself: what is left of a correction of a regular end where rounding is all there is.
+At a singular end rounding is never so small."""
 
 STRIDE = 0.7
 """Greatest length of a step [rad | size]: beyond it the cubic says little of a turn."""
@@ -51,11 +63,21 @@ STRIDE = 0.7
 END = 1e-11
 """Value of u at which a path that has not ended in a regular solution is left: a double solution is some 3e-6 away."""
 
+END_S = END ** (1.0 / ROOTS)
+"""The same of s."""
+
 NEAR = 1e-6
 """Value of u below which a path on which no further step succeeds counts as having come to its end."""
 
-SHORTEST = 1e-7
-"""Length of a step, as a part of u, below which a path is given up."""
+SHORTEST = 5e-8
+"""Length of a step, as a part of s, below which a path is given up."""
+
+LAST = 0.8
+"""A step that would leave less than a fifth of s goes to the end at once. Where it fails, which it does at a singular
+end, so much of s is tried instead."""
+
+AGAIN = 0.5
+"""Part of the s of a failed step to the end below which the next one is tried."""
 
 MOST = 400
 """Steps after which a path is given up; the longest of those that end take some hundred."""
@@ -137,53 +159,60 @@ def track(loop: Loop, start: Points, target: Points, values: Complex) -> Ends:
 def _track(loop: Loop, start: Points, target: Points, part: Index, ends: Ends) -> None:
     """`track` for a block of paths, whose ends are written to the places `part`."""
     q = np.ascontiguousarray(ends.values[:, part])
-    u = np.ones(len(part))
-    last, twist = _on_line(start, target, u)
+    s = np.ones(len(part))
+    last, twist = _on_line(start, target, s)
     axes, _, _ = follow(loop, last, q)
-    v = solved(twists(loop, axes), twist)
+    v = ROOTS * solved(twists(loop, axes), twist)
     before, tangent = q, v  # the point before and its tangent; with the infinite step between they say nothing
-    h, gone = np.full(len(part), FIRST), np.full(len(part), np.inf)
+    h, gone, tried = np.full(len(part), FIRST), np.full(len(part), np.inf), np.full(len(part), np.inf)
     for _ in range(MOST):
-        h = np.where(h > 0.8 * u, u, h)
-        to = u - h
+        # To the end at once, unless that failed not long ago; then not beyond where the path is left.
+        ended = s <= END_S
+        ending = (h > LAST * s) & (s < AGAIN * tried)
+        h = np.where(ending, s, np.minimum(np.minimum(h, LAST * s), np.maximum(s - 0.999 * END_S, 0.0)))
+        to = s - h
         D = (q - before) / gone
         guess = q + h * v + (h * h / gone) * (v - D + (1.0 + h / gone) * (v + tangent - 2.0 * D))
         weight = _weights(loop, q)
         stride = (np.abs(guess - q) * weight).max(axis=0)
-        last, twist = _on_line(start, target, to)
+        last, twist = _on_line(start, target, to**ROOTS)
         axes, error, _ = follow(loop, last, guess)
         first = solved(twists(loop, axes), error)
         guess -= first
         axes, error, _ = follow(loop, last, guess)
         both = solved(twists(loop, axes), np.stack([error, twist], axis=-1))
-        second, ahead = both[..., 0], both[..., 1]
+        second, ahead = both[..., 0], ROOTS * to ** (ROOTS - 1) * both[..., 1]
         guess -= second
         one, two = (np.abs(first) * weight).max(axis=0), (np.abs(second) * weight).max(axis=0)
-        fine = (one < OFF) & (two < np.maximum(CONTRACTS * one, np.where(to > 0.0, NOISE, 0.0))) & (stride < STRIDE)
+        small = np.minimum(CONTRACTS * one, np.where(to > 0.0, BESIDE * to, np.inf))
+        fine = (one < OFF) & (two < np.maximum(small, np.where(to > 0.0, NOISE, EXACT))) & (stride < STRIDE) & ~ended
         factor = 0.9 * np.minimum((AIM / one) ** 0.25, STRIDE / stride)
         factor = np.where(fine, np.clip(factor, 0.4, 2.5), np.clip(factor, 0.1, 0.4))
         factor[~np.isfinite(factor)] = 0.1
+        factor[ending & ~fine] = LAST
+        tried[ending & ~fine] = s[ending & ~fine]
         before, tangent = np.where(fine, q, before), np.where(fine, v, tangent)
-        q, v, u = np.where(fine, guess, q), np.where(fine, ahead, v), np.where(fine, to, u)
+        q, v, s = np.where(fine, guess, q), np.where(fine, ahead, v), np.where(fine, to, s)
         gone = np.where(fine, h, gone)
         h = h * factor
-        stuck = ~fine & (h < SHORTEST * u)
-        over = (u <= END) | stuck | (distance(loop, q) > FAR)
-        if np.count_nonzero(over) > 0.2 * len(u) or over.all():
-            _leave(loop, ends, part, over, q, v, u, stuck)
+        stuck = ~fine & (h < SHORTEST * s)
+        over = (s <= END_S) | stuck | (distance(loop, q) > FAR)
+        if np.count_nonzero(over) > 0.2 * len(s) or over.all():
+            _leave(loop, ends, part, over, q, v, s, stuck)
             on = ~over
-            part, q, v, u = part[on], q[:, on], v[:, on], u[on]
-            before, tangent, h, gone = before[:, on], tangent[:, on], h[on], gone[on]
+            part, q, v, s = part[on], q[:, on], v[:, on], s[on]
+            before, tangent, h, gone, tried = before[:, on], tangent[:, on], h[on], gone[on], tried[on]
             start, target = Points(start.r[:, on], start.p[:, on]), Points(target.r[:, on], target.p[:, on])
             if not len(part):
                 return
-    _leave(loop, ends, part, np.ones(len(part), dtype=bool), q, v, u, u > END)
+    _leave(loop, ends, part, np.ones(len(part), dtype=bool), q, v, s, s > END_S)
 
 
-def _leave(loop: Loop, ends: Ends, part: Index, over: Mask, q: Complex, v: Complex, u: Array, stuck: Mask) -> None:
-    place = part[over]
+def _leave(loop: Loop, ends: Ends, part: Index, over: Mask, q: Complex, v: Complex, s: Array, stuck: Mask) -> None:
+    place, u = part[over], s**ROOTS
     ends.values[:, place], ends.u[place] = q[:, over], u[over]
-    ends.speed[place] = u[over] * (np.abs(v[:, over]) * _weights(loop, q[:, over])).max(axis=0)
+    # u dq/du is s dq/ds, divided by the power.
+    ends.speed[place] = s[over] / ROOTS * (np.abs(v[:, over]) * _weights(loop, q[:, over])).max(axis=0)
     ends.lost[place] = stuck[over] & (u[over] > NEAR)
 
 

@@ -24,34 +24,21 @@ from numpy.typing import NDArray
 from robokin.inverse.analysis import Analysis, General
 from robokin.inverse.claims import ACCOUNTED, COUNTED, NOTHING, Claims
 from robokin.inverse.complex_newton import regular
-from robokin.inverse.elimination import REAL, count_solutions, rescue_candidates
+from robokin.inverse.elimination import REAL, count_solutions
 from robokin.inverse.homotopy import Homotopy
 from robokin.inverse.loop import Candidates, ComplexCandidates, Loop
-from robokin.inverse.members import listed_once
 from robokin.inverse.monodromy import Known
+from robokin.inverse.more_motions import listed_with_more
+from robokin.inverse.neighbours import NEARLY, STEPS, half_turns, next_door
 from robokin.inverse.newton import closing_at, refine
 from robokin.inverse.numeric import descend, error_and_jacobian
 from robokin.inverse.skew import Skew
 from robokin.inverse.verify import CLOSES, Found, distinct, merged
 from robokin.kinematics.chain import Chain
-from robokin.spatial import rotation_from_rpy, transform
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Flags = NDArray[np.bool_]
-
-TWIST = 1e-3
-"""How far away [size and rad] the solver is asked for poses next door: far enough that roots are told apart, near
-enough for Newton's steps."""
-
-TWISTS = 6
-"""In how many directions."""
-
-DRIFT = 0.05
-"""An added joint that is farther from zero [rad | size] at a pose next door is not about to stand still."""
-
-STEPS = 15
-"""Newton steps from next door."""
 
 FINE = 6
 """Steps by singular values thereafter: next to singular poses normal equations lose half of the digits."""
@@ -60,11 +47,11 @@ LEAST = 1e-9
 """Singular values below this part of the greatest are left out of such a step: what the error has of their direction
 is rounding."""
 
-NEARLY = 1e-5
-"""What closes no better [size and rad] after Newton's steps leads nowhere."""
-
 STANDS = 1e-2
 """An added joint nearer to zero [rad] in a solution of the loop may stand still, but for a double root's digits."""
+
+AT_REST = 1e-7
+"""An added joint nearer to zero [rad] in an exact solution of the loop stands still."""
 
 SLIDES = "; with sliding joints there may be more at such a pose"
 """What is added to an account that does not end in regular solutions alone."""
@@ -82,16 +69,25 @@ def look_again(
     """
     assert analysis.six is not None
     other = _others_of(analysis)
-    parts = [next_door(analysis, T)]
     basis = np.zeros(len(T), dtype=np.int8)
     words: dict[int, str] = {}
+    # How many solutions there are, where all N complex ones were told apart.
+    expected = np.full(len(T), -1)
+    # Whether paths ended in singular solutions, and all did.
+    loose = np.zeros(len(T), dtype=bool)
+    index, q, whole = next_door(analysis, T)
+    parts = [(index, q)]
+    basis[whole] = COUNTED
+    if near is not None:
+        parts.append(wished(analysis, T, near))
     for skew in other.skews:
-        index, q, whole = skewed(skew, T, analysis.own.n)
+        index, q, whole, standing = skewed(skew, T, analysis.own.n)
         parts.append((index, q))
-        basis[whole] = COUNTED
+        basis[whole], expected[whole] = COUNTED, standing[whole]
     open_ = np.flatnonzero(basis == NOTHING)
+    few = few_solutions(analysis, T)
     if len(open_):
-        ends, closed, words = followed(other, T[open_])
+        ends, closed, words, expected[open_], loose[open_] = followed(other, T[open_], few[open_], analysis.own.n)
         still = (
             np.max(np.abs(half_turns(ends[1], other.chain.revolute)[:, analysis.own.n :]), axis=1, initial=0.0) < STANDS
         )
@@ -103,9 +99,14 @@ def look_again(
     found = merged(found, closing_at_last(analysis.own, T, index, q, analysis.size))
     closing = np.bincount(found.index, minlength=len(T))
     found = distinct(found, analysis.own.revolute, analysis.size)
-    found, motions, unclear = listed_once(analysis.own, analysis.solver, T, found, analysis.size, limits, rest, near)
+    found, motions, unclear, beside = listed_with_more(
+        analysis.own, analysis.solver, T, found, analysis.size, limits, rest, near, np.flatnonzero(loose)
+    )
     found = distinct(found, analysis.own.revolute, analysis.size)
+    real = np.bincount(found.index, minlength=len(T))
     for i in unclear.tolist():
+        if real[i] + beside[i] == expected[i] and i not in motions:
+            continue
         basis[i], words[i] = (
             NOTHING,
             "next to a singular pose: other solutions may be too near to one listed to be told apart",
@@ -113,18 +114,18 @@ def look_again(
     for i, sets in motions.items():
         if any(motion.curve.sheets for motion in sets):
             basis[i], words[i] = NOTHING, "a self-motion of more than one dimension: only curves on it were followed"
-        elif not analysis.own.revolute.all():
+        elif not analysis.own.revolute.all() and not few[i]:
             # Of slides a self-motion may have pieces that no path and no neighbouring pose leads to.
             basis[i], words[i] = NOTHING, "self-motions with sliding joints: there may be more of them"
-    real = np.bincount(found.index, minlength=len(T))
-    for i in np.flatnonzero(basis == COUNTED):
+    for i in np.flatnonzero(basis == COUNTED) if other.skews else ():
         number = other.skews[0].number
         words[int(i)] = (
             f"{number} of {number} complex solutions found of the arm with skew axes added, "
             f"{real[i]} real with these standing still"
         )
     claims = Claims(basis, analysis.number, real, words, motions)
-    claims.candidates, claims.duplicates = np.bincount(index, minlength=len(T)), closing - real
+    late = np.maximum(real - closing, 0)
+    claims.candidates, claims.duplicates = np.bincount(index, minlength=len(T)) + late, closing + late - real
     return found, claims
 
 
@@ -159,46 +160,47 @@ def _others_of(analysis: Analysis) -> _Others:
     return _kept[analysis]
 
 
-def next_door(analysis: Analysis, T: Array) -> tuple[Index, Array]:
-    """Configurations (s, window) near solutions of T (m, 4, 4), from the solutions at poses a trifle away."""
-    six, loop, solver = analysis.six, analysis.loop, analysis.solver
-    assert six is not None
-    assert loop is not None
-    rng = np.random.default_rng(3)
-    away = transform(rotation_from_rpy(TWIST * rng.normal(size=(TWISTS, 3))), TWIST * rng.normal(size=(TWISTS, 3)))
-    closing = loop.closing(T)
-    many = (away[:, None] @ closing[None]).reshape(-1, 4, 4)
-    candidates = solver.candidates(many)
-    parts = [Candidates(candidates.index % len(T), candidates.values)]
-    if isinstance(solver, General):
-        parts.append(rescue_candidates(loop, solver.splits, closing))
-    index = np.concatenate([part.index for part in parts])
-    values = np.concatenate([part.values for part in parts])
-    scale = np.where(six.chain.revolute, 1.0, loop.size)
-    own = six.chain.n - six.virtual
-    if six.virtual:
-        near = np.max(np.abs(half_turns(values[:, own:], six.chain.revolute[own:])), axis=1) < DRIFT
-        index, values = index[near], values[near]
-    else:
-        values, position, angle = refine(loop, closing, index, values, STEPS)
-        near = (position < NEARLY) & (angle < NEARLY)
-        index, values = index[near], values[near]
-    return index, (values * scale - six.chain.offsets)[:, :own]
+def wished(analysis: Analysis, T: Array, near: Array) -> tuple[Index, Array]:
+    """The wish `near` (window,) for those of the targets T (m, 4, 4) that it nearly reaches."""
+    off, _ = error_and_jacobian(analysis.own, T, np.tile(near, (len(T), 1)), analysis.size)
+    index = np.flatnonzero(np.max(np.abs(off), axis=1) < NEARLY)
+    return index, np.tile(near, (len(index), 1))
 
 
-def skewed(skew: Skew, T: Array, own: int) -> tuple[Index, Array, Flags]:
-    """Configurations (s, own) at which the added axes nearly stand still, and for which targets none is missing."""
+def skewed(skew: Skew, T: Array, own: int) -> tuple[Index, Array, Flags, Index]:
+    """Configurations (s, own) at which the added axes nearly stand still, and for which targets none is missing.
+
+    Also how many (m,) there are at which they stand still.
+    """
     index, q, whole = skew.solutions(T)
-    near = np.max(np.abs(half_turns(q[:, own:], np.ones(6 - own, dtype=bool))), axis=1) < STANDS
-    return index[near], q[near, :own], whole
+    added = np.max(np.abs(half_turns(q[:, own:], np.ones(6 - own, dtype=bool))), axis=1)
+    near = added < STANDS
+    return index[near], q[near, :own], whole, np.bincount(index[added < AT_REST], minlength=len(T))
 
 
-def followed(other: _Others, T: Array) -> tuple[tuple[Index, Array], Flags, dict[int, str]]:
-    """Configurations (s, 6) [rad | m] in which a homotopy's paths end; for which targets all ended; in words."""
+def few_solutions(analysis: Analysis, T: Array) -> Flags:
+    """(m,) at which targets a closed form's equations leave finitely many solutions, but for a wrist's self-motions."""
+    assert analysis.loop is not None
+    if isinstance(analysis.solver, General):
+        return np.zeros(len(T), dtype=bool)
+    few = analysis.solver.candidates(analysis.loop.closing(T)).few
+    return np.zeros(len(T), dtype=bool) if few is None else np.asarray(few)
+
+
+def followed(
+    other: _Others, T: Array, few: Flags, own: int
+) -> tuple[tuple[Index, Array], Flags, dict[int, str], NDArray[np.intp], Flags]:
+    """Configurations (s, 6) [rad | m] in which a homotopy's paths end; for which targets all ended; in words.
+
+    Also how many (m,) of them there are at which the joints after the first `own` stand still, -1 where it is not
+    known; and where (m,) all ended, some in singular solutions, and paths may miss self-motions. few: (m,) where they
+    may not.
+    """
+    unknown = np.full(len(T), -1)
     if other.homotopy.count is None:
         nowhere = np.empty(0, dtype=np.intp), np.empty((0, 6))
         words = "searched for in several ways; how many complex solutions the arm has could not be told"
-        return nowhere, np.zeros(len(T), dtype=bool), dict.fromkeys(range(len(T)), words)
+        return nowhere, np.zeros(len(T), dtype=bool), dict.fromkeys(range(len(T)), words), unknown, unknown > 0
     account = other.homotopy.account(other.loop.closing(T))
     index = np.concatenate([account.index, account.singular_index])
     values = np.concatenate([account.values, account.singular_values])
@@ -206,9 +208,12 @@ def followed(other: _Others, T: Array) -> tuple[tuple[Index, Array], Flags, dict
     closed, said = account.closed, {i: account.words(i) for i in range(len(T))}
     if not other.chain.revolute.all():
         # Where slides are singular a self-motion may be one that no path ends on.
-        closed = closed & (account.regular == account.count)
+        closed = closed & (few | (account.regular == account.count))
         said |= {int(i): said[int(i)] + SLIDES for i in np.flatnonzero(account.closed & ~closed)}
-    return (index, q), closed, said
+    still = np.max(np.abs(half_turns(account.values[:, own:], other.chain.revolute[own:])), axis=1, initial=0.0)
+    number = np.bincount(account.index[still < AT_REST], minlength=len(T))
+    expected = np.where(account.regular == account.count, number, unknown)
+    return (index, q), closed, said, expected, closed & ~few & (account.singular > 0)
 
 
 def known_solutions(loop: Loop, solver: Any, number: int | None) -> list[Known]:
@@ -247,11 +252,6 @@ def _known_by_elimination(
         paired = mine[np.abs(mine.imag).max(axis=1) > REAL]
         found.append(Known(closing[i], np.concatenate([mine, paired.conj()])))
     return found
-
-
-def half_turns(values: Array, turning: Flags) -> Array:
-    """Joint values (s, k) with angles in [-π, π]."""
-    return np.asarray(np.where(turning, values - 2.0 * np.pi * np.round(values / (2.0 * np.pi)), values))
 
 
 def closing_at_last(chain: Chain, T: Array, index: Index, q: Array, size: float) -> Found:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.curve_tracing import Curve, leads_away, trace_many
-from robokin.inverse.fold import SLIGHT_BEND, to_fold, to_multiple_root
+from robokin.inverse.fold import SLIGHT_BEND, to_fold, to_multiple_roots
 from robokin.inverse.nearest import few_joints
 from robokin.inverse.null_motion import (
     CLOSES,
@@ -79,6 +79,12 @@ def classify(chain: Chain, T: Array, q: Array, size: float) -> Local:
         ways[i] = cone(J[i])[0]
     _follow(chain, T, x, J, np.flatnonzero(trying), size, ways, dimension)
     _sharpen(chain, T, np.where(dimension == 0, null, 0), size, exact, double)
+    # Of a curve of double solutions, as of a stretched arm with a straight wrist, a seed has half of the digits.
+    curved = (dimension == 1) & (null > 1) & ~manifold
+    for many in np.unique(null[curved]).tolist():
+        rows = np.flatnonzero(curved & (null == many))
+        roots, found = to_multiple_roots(chain, T[rows], exact[rows], size, many)
+        exact[rows[found]] = roots[found]
     return Local(exact, null, dimension, double, tuple(ways))
 
 
@@ -88,7 +94,7 @@ def _follow(
     """Fill in the directions and dimensions of the sets that leave x (s, n), for the rows (k,) that may be on some."""
     if not len(rows):
         return
-    cones = [cone(J[i]) for i in rows]
+    cones = _cones(J[rows])
     place = np.repeat(np.arange(len(rows)), [len(found) for found, _ in cones])
     tried, index = np.concatenate([found for found, _ in cones]), rows[place]
     on = follows(chain, T[index], x[index], tried, size)
@@ -108,16 +114,23 @@ def _follow(
         ways[i] = found
 
 
+def _cones(J: Array) -> list[tuple[Array, bool]]:
+    """`cone` of Jacobians (s, 6, n), those with one null vector all at once."""
+    values, Vt = np.linalg.svd(J)[1:]
+    single = J.shape[2] - np.sum(values > ZERO, axis=1) == 1
+    return [(v[-1:], True) if alone else cone(one) for one, v, alone in zip(J, Vt, single.tolist(), strict=True)]
+
+
 def _sharpen(chain: Chain, T: Array, null: Index, size: float, exact: Array, double: Flags) -> None:
     """Bring the multiple roots among `exact` (s, n) to full digits; null: (s,) 0 for what is none."""
     # Known not to be on curves, also those that bend less may be folds: an elbow beside a nearly singular wrist.
     slight = np.flatnonzero((null == 1) & ~double)
     folds = to_fold(chain, T[slight], exact[slight], size, SLIGHT_BEND)
     double[slight], exact[slight[folds.double]] = folds.double, folds.q[folds.double]
-    for i in np.flatnonzero((null > 0) & ~double):
-        root = to_multiple_root(chain, T[i], exact[i], size, int(null[i]))
-        if root is not None:
-            double[i], exact[i] = True, root
+    for many in np.unique(null[(null > 0) & ~double]).tolist():
+        rows = np.flatnonzero((null == many) & ~double)
+        roots, found = to_multiple_roots(chain, T[rows], exact[rows], size, many)
+        double[rows[found]], exact[rows[found]] = True, roots[found]
 
 
 def _dimension(chain: Chain, T: Array, x: Array, ways: Array, flat: bool, size: float) -> int:

@@ -10,33 +10,18 @@ from numpy.typing import NDArray
 from robokin.inverse.arcs import arcs_within
 from robokin.inverse.branches import branch_names
 from robokin.inverse.claims import BASES
-from robokin.inverse.redundant import NOT_FOUND
+from robokin.inverse.curve_crossings import crossings
+from robokin.inverse.redundant import NOT_FOUND, seeds_of
 from robokin.inverse.result import Arc, Family, Result, Solution
 from robokin.inverse.solution_sets import families
 from robokin.inverse.target_block import Request, TargetBlock, stands_for
 from robokin.inverse.verify import within_limits, wrapped
 from robokin.kinematics.forward import forward_kinematics
-from robokin.spatial.transforms import FARTHEST
 
 Array = NDArray[np.float64]
 
 REACHED = 1e-8
 """A nearest configuration whose position is off by less, in the arm's size, lacks only the orientation."""
-
-USELESS = 10.0 * FARTHEST
-"""A limit beyond this [m] keeps a joint from no target, and its square may be no number."""
-
-MOST = 16
-"""Solutions listed for an arm that has infinitely many."""
-
-STANDS = 1e-5
-"""A listed solution this near [rad | size] to the member that was chosen to stand for a self-motion is that member."""
-
-OUTSIDE = "outside the joint limits"
-"""The reason where there are solutions but for the limits."""
-
-FAR = "out of reach"
-"""The reason where not even the position can be had."""
 
 FAR = "out of reach"
 """The reason where not even the position can be had."""
@@ -104,18 +89,29 @@ def families_of(request: Request, block: TargetBlock, i: int, q: Array) -> tuple
 
 
 def _redundant_families(request: Request, block: TargetBlock, i: int, q: Array) -> tuple[Family, ...]:
-    """The self-motions that the listed solutions q: (k, n) of target i are on, for an arm with one joint to spare."""
+    """The self-motions of target i, for an arm with one joint to spare, that come within the limits.
+
+    They are followed from the listed solutions q: (k, n) and from all that are known, within the limits or not. A
+    curve that none of these is on, nor crosses one that is, is not known.
+    """
     analysis, limits = request.analysis, request.own_limits
     if not len(q):
         return ()
     T, size = block.T[i], analysis.size
-    sets = families(analysis.chain, T[None], q, size)
+    known = block.every[0][block.every[1] == i]
+    seeds = np.concatenate([q, seeds_of(analysis, T, known, limits, request.middle)])
+    sets = families(analysis.chain, T[None], seeds, size)
+    crossing = crossings(sets.curves[0], analysis.chain, T, size)
+    if len(crossing):
+        seeds = np.concatenate([seeds, crossing])
+        sets = families(analysis.chain, T[None], seeds, size)
     out = []
     for number, curve in enumerate(sets.curves[0]):
-        members = np.flatnonzero(sets.of == number)
-        if len(members):
-            arcs = arcs_within(curve, analysis.chain, T, limits, size)
-            out.append(Family(curve.joints, curve.dimension, curve.closed, arcs, int(members[0])))
+        members = np.flatnonzero(sets.of[: len(q)] == number)
+        arcs = arcs_within(curve, analysis.chain, T, limits, size)
+        if arcs or len(members):
+            solution = int(members[0]) if len(members) else -1
+            out.append(Family(curve.joints, curve.dimension, curve.closed, arcs, solution))
     return tuple(out)
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.elimination import ORDER, Elimination, choose_splits, count_solutions, generic_count
+from robokin.inverse.elimination import ORDER, choose_splits, count_solutions, elimination_of, generic_count
 from robokin.inverse.loop import Loop, loop_of
 from robokin.inverse.padding import Padded
 from robokin.kinematics.chain import Chain, chain_size
@@ -34,7 +34,7 @@ class Skew:
         # Where all joints turn any split serves; a joint that slides asks for a choice.
         splits = list(ORDER[:1]) if chain.revolute.all() else choose_splits(self.loop) or list(ORDER[:1])
         self.number = generic_count(self.loop, splits)
-        self.solver = Elimination(self.loop, splits[0])
+        self.solver = elimination_of(self.loop, splits[0])
 
     def solutions(self, T: Array) -> tuple[NDArray[np.intp], Array, NDArray[np.bool_]]:
         """Real solutions of the loop for targets T (m, 4, 4): the target of each (s,), values (s, 6) [rad | m], and

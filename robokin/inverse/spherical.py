@@ -160,7 +160,7 @@ class SphericalTriple:
             q_c, real, loose = self._third(equations)
             found = self._from_third(B, D, g, equations, q_c, real, index, marks)
             if loose is None:
-                return marks.on(found)
+                return marks.on(found, True)
             marks.loose |= loose
             # q_c's equation says nothing: whatever q_c the others can serve.
             index = index[np.broadcast_to(loose, index.shape)]
@@ -168,7 +168,8 @@ class SphericalTriple:
             every = np.ones(np.shape(fan[0]), dtype=bool)
             B, D = taken(B, index), taken(D, index)
             g = self._point(D)
-            return marks.on(joined(found, self._from_third(B, D, g, self._equations(B, g), fan, every, index, marks)))
+            more = self._from_third(B, D, g, self._equations(B, g), fan, every, index, marks)
+            return marks.on(joined(found, more), True)
 
     def _point(self, D: Frame) -> Vector:
         """g."""
@@ -207,7 +208,7 @@ class SphericalTriple:
         R = transposed(D.R)
         for joint, position, link in zip(others, positions, (self.A, B, self.C), strict=True):
             R = transposed([applied_back(link.R, joint.back_direction(position, part)) for part in transposed(R)])
-        marks.short(R[0][2], R[1][2], index)
+        marks.short(R[0][2], R[1][2], index, wrist=True)
         *turns, reached = three_turns(self.P, self.Q, R)
         values = [joint.value(position) for joint, position in zip(others, positions, strict=True)]
         values += [in_front(q, real) for q in turns]

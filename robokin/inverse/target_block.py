@@ -19,10 +19,12 @@ from robokin.inverse.closing import closing_nearest
 from robokin.inverse.members import Motion
 from robokin.inverse.nearest import free_at, numeric_solutions
 from robokin.inverse.numeric import descend, error_and_jacobian
+from robokin.inverse.onto_limits import onto_limits
 from robokin.inverse.redundant import MOST_SOUGHT, UNPROVEN, supplemented
 from robokin.inverse.spread import well_spread
 from robokin.inverse.verify import CLOSES, Found, distinct, merged, nothing, within_limits, wrapped
 from robokin.model import Robot
+from robokin.model.robot import tolerated
 from robokin.spatial.transforms import FARTHEST
 
 Array = NDArray[np.float64]
@@ -31,9 +33,6 @@ Method = Literal["auto", "analytic", "numeric"]
 TYPED = 1e-3
 """A wish that misses a target by less [size and rad] is meant to be a solution for it: it was typed or printed."""
 
-REACHED = 1e-8
-"""A nearest configuration whose position is off by less, in the arm's size, lacks only the orientation."""
-
 USELESS = 10.0 * FARTHEST
 """A limit beyond this [m] keeps a joint from no target, and its square may be no number."""
 
@@ -45,51 +44,6 @@ STANDS = 1e-5
 
 OUTSIDE = "outside the joint limits"
 """The reason where there are solutions but for the limits."""
-
-FAR = "out of reach"
-"""The reason where not even the position can be had."""
-
-USELESS = 10.0 * FARTHEST
-"""A limit beyond this [m] keeps a joint from no target, and its square may be no number."""
-
-MOST = 16
-"""Solutions listed for an arm that has infinitely many."""
-
-STANDS = 1e-5
-"""A listed solution this near [rad | size] to the member that was chosen to stand for a self-motion is that member."""
-
-OUTSIDE = "outside the joint limits"
-"""The reason where there are solutions but for the limits."""
-
-FAR = "out of reach"
-"""The reason where not even the position can be had."""
-
-MOST = 16
-"""Solutions listed for an arm that has infinitely many."""
-
-STANDS = 1e-5
-"""A listed solution this near [rad | size] to the member that was chosen to stand for a self-motion is that member."""
-
-OUTSIDE = "outside the joint limits"
-"""The reason where there are solutions but for the limits."""
-
-FAR = "out of reach"
-"""The reason where not even the position can be had."""
-
-STANDS = 1e-5
-"""A listed solution this near [rad | size] to the member that was chosen to stand for a self-motion is that member."""
-
-OUTSIDE = "outside the joint limits"
-"""The reason where there are solutions but for the limits."""
-
-FAR = "out of reach"
-"""The reason where not even the position can be had."""
-
-OUTSIDE = "outside the joint limits"
-"""The reason where there are solutions but for the limits."""
-
-FAR = "out of reach"
-"""The reason where not even the position can be had."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,13 +92,22 @@ class TargetBlock:
         if request.near is not None and analysis.redundancy and not analysis.open and request.method != "numeric":
             found = _with_more(found, _beside(request, T, request.near), np.arange(len(T)))
         found, inside = _limited(request, found)
+        if request.limits and not analysis.redundancy and not analysis.open:
+            found, moved = onto_limits(analysis, T, found, inside, request.own_limits)
+            if moved.any():
+                found, inside = _limited(request, distinct(found, robot.revolute, analysis.size))
         later: NDArray[np.intp] | None = None
         if request.method != "numeric" and analysis.solver is not None and analysis.redundancy:
             wanted = MOST if request.most is None or request.most > MOST_SOUGHT else request.most
             search = ~self.beyond if request.method == "auto" else np.zeros(len(T), dtype=bool)
             limits, middle = request.own_limits, request.middle
-            found, later = supplemented(analysis, T, limits, middle, request.seed, found, wanted, MOST, search)
-            found, inside = _limited(request, found)
+            counting = inside if request.limits else np.ones(len(found), dtype=bool)
+            count = np.bincount(found.index[counting], minlength=len(T))
+            more, later = supplemented(analysis, T, limits, middle, request.seed, found, count, wanted, MOST, search)
+            more, more_inside = _limited(request, more)
+            order = np.argsort(np.concatenate([found.index, more.index]), kind="stable")
+            later = np.concatenate([np.zeros(len(found), dtype=np.intp), later])[order]
+            found, inside = merged(found, more).pick(order), np.concatenate([inside, more_inside])[order]
         searches: list[Callable[[Analysis, Array, Array, Array, int], Found]] = []
         if request.method == "numeric" or (request.method == "auto" and analysis.solver is None):
             searches = [numeric_solutions, closing_nearest]
@@ -165,7 +128,8 @@ class TargetBlock:
             found, inside = found.pick(inside), inside[inside]
         self.within = np.bincount(found.index, minlength=len(T))
         self.found, self.inside = _ordered(request, found, inside, later)
-        self.count = np.bincount(self.found.index, minlength=len(T))
+        whole = len(self.found) == len(found)
+        self.count = self.within if whole else np.bincount(self.found.index, minlength=len(T))
         self.cut = self.within > self.count
 
     @cached_property
@@ -245,9 +209,19 @@ def _with_more(found: Found, more: Found, missing: NDArray[np.intp]) -> Found:
 
 
 def _limited(request: Request, found: Found) -> tuple[Found, NDArray[np.bool_]]:
-    """Angles turned into the limits, and which configurations are within them."""
+    """Angles turned into the limits, and which configurations are within them.
+
+    Where limits do not count, an angle whose wish is outside them is turned next to the wish.
+    """
     robot = request.robot
-    q, inside = within_limits(found.q, robot.revolute, robot.limits, request.near)
+    if request.near is None or request.limits or robot.within_limits(request.near):
+        q, inside = within_limits(found.q, robot.revolute, robot.limits, request.near)
+    else:
+        low, high = tolerated(robot.limits)
+        outside = (request.near < low) | (request.near > high)
+        counting = np.where(outside[:, None], [-np.inf, np.inf], robot.limits)
+        q, _ = within_limits(found.q, robot.revolute, counting, request.near)
+        inside = np.asarray(robot.within_limits(q)).reshape(len(q))
     return Found(found.index, q, found.position, found.angle), inside
 
 

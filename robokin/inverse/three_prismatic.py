@@ -110,7 +110,7 @@ class ThreePrismatic:
             marks = Marks(len(closing))
             marks.short(W[0][2], W[1][2], np.arange(len(closing)))
             marks.near |= np.broadcast_to(planar, (2, len(closing))).any(axis=0)
-            return marks.on(found)
+            return marks.on(found, True)
 
     def _translation(self, turns: dict[int, Motion], end: Frame) -> tuple[Vector, list[Vector]]:
         """The translation of the loop at lengths 0, and the directions of the sliding axes in order."""

@@ -92,7 +92,8 @@ class Track:
         self.turning = chain.revolute & both
         self.bounded = both | (~chain.revolute & (np.isfinite(self.low) | np.isfinite(self.high)))
         # A joint that stands still is within its limits everywhere or nowhere; its margin has no zero.
-        self.moving = self.bounded & (np.ptp(self.points, axis=0) > MOVES)
+        self.still = np.ptp(self.points, axis=0) <= MOVES
+        self.moving = self.bounded & ~self.still
 
     def cubic(self, u: Array) -> tuple[Array, Array]:
         """Points (m, n) near the curve at places u (m,), and its tangents (m, n)."""

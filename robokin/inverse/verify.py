@@ -157,8 +157,9 @@ def closing_distances(chain: Chain, q: Array, size: float) -> Array:
     """(s,) up to which distance from the target [m] configurations (s, n) [rad | m] close; of turning joints (1,)."""
     if chain.revolute.all():
         return np.array([CLOSES * size])
-    slid = np.abs(q + chain.offsets)[:, ~chain.revolute]
-    return np.asarray(CLOSES * size + ROUNDING * np.sum(slid, axis=1))
+    slides = np.flatnonzero(~chain.revolute)
+    slid = np.abs(q.T[slides] + chain.offsets[slides, None])
+    return np.asarray(CLOSES * size + ROUNDING * np.sum(slid, axis=0))
 
 
 def wrapped(q: Array, revolute: NDArray[np.bool_]) -> Array:
@@ -188,7 +189,8 @@ def distinct_and_close(found: Found, revolute: NDArray[np.bool_], size: float) -
         return found, none, none
     q = wrapped(found.q, revolute)
     # -180° is 180°, whatever the last digits say: the order must not depend on them.
-    q[revolute & (q < HALF_TURN - np.pi)] += 2.0 * np.pi
+    if q.T.min() < HALF_TURN - np.pi:
+        q[revolute & (q < HALF_TURN - np.pi)] += 2.0 * np.pi
     scaled = q.T / np.where(revolute, np.pi, size)[:, None]
     by_target = np.argsort(found.index.astype(np.uint16), kind="stable")  # of 16 bits: counted, not compared
     counts = np.bincount(found.index)
@@ -209,8 +211,10 @@ def distinct_and_close(found: Found, revolute: NDArray[np.bool_], size: float) -
     weights = 1.0 + np.modf(np.arange(1.0, len(scaled) + 1.0) * 0.6180339887498949)[0]
     sums = table(weights @ np.abs(scaled))
     sums.sort(axis=1)
+    gaps = np.full(len(sums), np.inf)
     with np.errstate(invalid="ignore"):
-        gaps = np.fmin.reduce(np.diff(sums, axis=1), axis=1, initial=np.inf)
+        for gap in np.diff(sums, axis=1).T:
+            np.fmin(gaps, gap, out=gaps)
     alike = gaps < SAME * weights.sum()
     close = found.index[by_target[np.cumsum(counts) - counts]][gaps < CLOSE]
     key = np.zeros(len(by_target))

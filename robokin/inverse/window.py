@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.analysis import Analysis, General
-from robokin.inverse.complex_newton import complex_refine, regular, regular_and_distinct
+from robokin.inverse.complex_newton import complex_refine, on_the_way_out, regular, regular_and_distinct
 from robokin.inverse.elimination import REAL
+from robokin.inverse.few_rows import errors
 from robokin.inverse.loop import ComplexCandidates
 from robokin.inverse.nearest import SINGULAR as ON_CURVE
 from robokin.inverse.newton import determinants
@@ -31,8 +32,9 @@ SINGULAR = 5e-6
 """Least singular value of the Jacobian (lengths in sizes) of a closed form's solution below which others may be lost:
 a root that is good to 1e-15 and its neighbour are then some 1e-5 apart, and equations neglect 1e-9."""
 
-TOLD_APART = 1e-7
-"""The same of solutions that are as many as the equations have roots: none is missing if they are told apart."""
+TOLD_APART = 1e-6
+"""The same of solutions that are as many as the equations have roots: none is missing if they are told apart. Two that
+are `members.NEXT` together or nearer, and one but for `members.MIDWAY`, are below 8e-7."""
 
 ROUNDED = 1e-14
 """Residual above which an elimination's solution is polished: it then does not depend on the poses beside it."""
@@ -101,6 +103,7 @@ def _count(analysis: Analysis, closing: Array, found: Found, imaginary: ComplexC
     if len(rough):
         complex_values[rough], residual[rough] = complex_refine(loop, closing, index[rough], complex_values[rough], 3)
     residual[np.abs(complex_values.imag).max(axis=1, initial=0.0) <= REAL] = np.inf
+    residual[on_the_way_out(loop, closing, index, complex_values, residual)] = np.inf
     kept = regular_and_distinct(loop, index, complex_values, residual)
     return np.asarray(count + 2 * np.bincount(index[kept], minlength=len(closing)))
 
@@ -151,9 +154,23 @@ def least_singular_values(chain: Chain, q: Array, size: float) -> Array:
     """The least singular value (s,) of the Jacobian, lengths in sizes, at q (s, n) [rad | m]."""
     if not len(q):
         return np.empty(0)
-    T = np.broadcast_to(np.eye(4), (len(q), 4, 4))
-    _, J = error_and_jacobian(chain, T, q, size)
+    _, J = errors(chain, np.broadcast_to(np.eye(4), (len(q), 4, 4)), q, size)
     return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
+
+
+def nearly_singular(chain: Chain, q: Array, size: float, below: Array) -> NDArray[np.bool_]:
+    """(s,) whether the least singular value of the Jacobian at q (s, n) [rad | m], lengths in sizes, is below (s,).
+
+    The product of the other singular values is at most (|J|² / 5)^(5/2), so that for six joints the
+    determinant answers for most.
+    """
+    _, J = errors(chain, np.broadcast_to(np.eye(4), (len(q), 4, 4)), q, size)
+    open_ = np.ones(len(q), dtype=bool)
+    if chain.n == 6:
+        open_ = np.abs(np.linalg.det(J)) <= below * (np.einsum("sij,sij->s", J, J) / 5.0) ** 2.5
+    near = np.zeros(len(q), dtype=bool)
+    near[open_] = np.linalg.svd(J[open_], compute_uv=False)[:, -1] < below[open_]
+    return near
 
 
 def beyond_chain(chain: Chain, T: Array, size: float) -> NDArray[np.bool_]:

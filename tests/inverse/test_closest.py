@@ -10,8 +10,10 @@ from robokin.inverse.analysis import analysis_of
 from robokin.inverse.closest import beyond_reach, nearest_configurations
 from robokin.inverse.closing import closing_nearest
 from robokin.inverse.numeric import error_and_jacobian
+from robokin.inverse.position_first import Ends, Ways
 from robokin.inverse.second_order import go_down, slope, solve_definite
 from robokin.inverse.solve import solve_many
+from robokin.inverse.turn_in_place import turned_in_place
 from robokin.inverse.verify import residuals
 from robokin.spatial import nearest_rotation, rotation_angle, rotation_from_axis_angle, transform
 
@@ -327,3 +329,36 @@ def test_what_is_found_alone_is_found_in_a_batch(rng):
     for i in (0, 5, 8):
         alone = closing_nearest(analysis, T[i : i + 1], robot.limits, home, 0)
         assert np.array_equal(alone.q, together.q[together.index == i])
+
+
+def test_an_elbow_s_circle_is_gone_along_to_its_end():
+    """Of a stretched seven-joint arm the angle that is left changes by a fifth along the elbow's circle, a radian."""
+    robot = robokin.load("gen3")
+    q = np.array([-1.443256, -1.58162, 1.640533, -0.004848, 2.461898, 0.797103, 0.89524])
+    T = robokin.forward_kinematics(robot, q)[None]
+    axis = np.random.default_rng(6).normal(size=3)
+    T[0, :3, :3] = rotation_from_axis_angle(axis / np.linalg.norm(axis), 0.004) @ T[0, :3, :3]
+    for seed in range(3):
+        _, position, angle = nearest_configurations(analysis_of(robot), T, robot.limits, np.zeros(robot.n), seed)
+        assert position[0] <= EXACT
+        assert angle[0] < 1.06e-3
+
+
+def test_turning_in_place_keeps_the_position_and_the_limits(rng):
+    for name in ("panda", "puma560"):
+        robot = robokin.load(name)
+        analysis = analysis_of(robot)
+        scale = np.where(robot.revolute, 1.0, analysis.size)
+        q = configurations(robot, analysis, 40, rng)
+        T = robokin.forward_kinematics(robot, q)
+        T[:, :3, :3] = turned(rng, T[:, :3, 3])[:, :3, :3]
+        low, high = (robot.limits / scale[:, None]).T[..., None]
+        angle = residuals(T, robokin.forward_kinematics(robot, q))[1]
+        before = Ends((q / scale).T, np.zeros(len(q)), angle)
+        after = turned_in_place(Ways(analysis.chain, analysis.size, low, high), columns(T), before)
+        position, left = residuals(T, robokin.forward_kinematics(robot, after.x.T * scale))
+        assert np.max(position) <= 1e-10 * analysis.size
+        assert np.allclose(left, after.angle, atol=1e-7)
+        assert np.all(left <= angle + 1e-9)
+        assert np.mean(left < angle - 0.1) > 0.5
+        assert robot.within_limits(after.x.T * scale).all()

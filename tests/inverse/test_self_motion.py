@@ -91,9 +91,16 @@ def assert_reaches(robot, T, q):
 def test_few_rows_agree_with_columns(rng):
     for name in ("puma560", "panda", "stanford", "scara"):
         robot, chain, size, _, _ = arm(name, np.zeros(robokin.load(name).n))
-        q = rng.uniform(-3, 3, (40, robot.n))
+        q = rng.uniform(-3, 3, (2100, robot.n))
         T = robokin.forward_kinematics(robot, q[::-1])
+        for some in (q[:0], q[:1], q[:40], q[:81], q):
+            mine = errors(chain, T[: len(some)], some, size)
+            assert [part.shape for part in mine] == [(len(some), 6), (len(some), 6, robot.n)]
+        # Beside a half turn the direction of the error has fewer digits.
         for ours, theirs in zip(errors(chain, T, q, size), error_and_jacobian(chain, T, q, size), strict=True):
+            assert np.allclose(ours, theirs, rtol=0, atol=1e-9)
+        few = errors(chain, T[:40], q[:40], size)
+        for ours, theirs in zip(few, error_and_jacobian(chain, T[:40], q[:40], size), strict=True):
             assert np.allclose(ours, theirs, rtol=0, atol=1e-12)
     half = robokin.forward_kinematics(robot, [0.0, 0.0, 0.0, np.pi])[None]
     e, _ = errors(chain, half, np.zeros((1, 4)), size)

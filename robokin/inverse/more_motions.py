@@ -1,0 +1,140 @@
+"""Self-motions that no path of a homotopy ends on: those that cross known ones, and those that only a search finds.
+
+Statement. Of targets with self-motions list the solutions once each (`members`), with all self-motions that are
+connected with a known one, and with those that Newton's steps find.
+Derivation. The paths of a homotopy end on each connected set of complex solutions, but not on each of the curves that
+it consists of: of a four-bar linkage whose sides are equal in pairs they may all end on the curve on which all joints
+move, and none where two bars are folded onto each other and turn as one. Where such curves cross the Jacobian loses
+rank (`curve_crossings`): from there all curves are followed, and so on from those that they lead to. Nor do paths end
+on each real piece of a complex curve: those that end on it may all end where it is not real. So where paths end in
+singular solutions steps from random configurations look for others; on a curve many of them end.
+Degenerate case. Of a target whose curves have no end nothing is vouched for.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.inverse.curve_crossings import crossings
+from robokin.inverse.members import Motion, listed_once
+from robokin.inverse.numeric import descend, error_and_jacobian
+from robokin.inverse.solution_sets import families, on_curve, turned_gap
+from robokin.inverse.verify import CLOSES, Found, merged
+from robokin.kinematics.chain import Chain
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Flags = NDArray[np.bool_]
+
+ROUNDS = 4
+"""How often curves are followed from crossings with known ones: a curve that is three crossings away is rare."""
+
+GUESSES = 64
+"""Random configurations that steps are made from: of those that end, from one in ten to nearly all end on a curve."""
+
+GUESS_STEPS = 40
+"""Steps from each: those that end take some fifteen."""
+
+KNOWN = 1e-2
+"""A configuration that ends nearer [rad | size] to a listed one was on the way to it, if that counts many times."""
+
+AMID = 0.29
+"""Which point of a curve is its seed, as a part of its length: not where it was followed from, which is a crossing."""
+
+
+def listed_with_more(
+    chain: Chain,
+    solver: object,
+    T: Array,
+    found: Found,
+    size: float,
+    limits: Array,
+    rest: Array,
+    near: Array | None,
+    searched: Index,
+) -> tuple[Found, dict[int, list[Motion]], Index, Index]:
+    """What `members.listed_once` says of solutions (s, n), sorted, of targets T (m, 4, 4), with more self-motions.
+
+    searched: (k,) the targets for which they are looked for from random configurations. Targets whose curves had no
+    end are among those said to be unclear.
+    """
+    found, motions, unclear, beside = listed_once(chain, solver, T, found, size, limits, rest, near)
+    growing = sorted({*motions, *searched.tolist()})
+    ends = _searched(chain, T[searched], size)
+    for step in range(ROUNDS):
+        seeds = {}
+        for i in growing:
+            parts = [_crossing(chain, T[i], motions.get(i, []), size)]
+            if step == 0 and i in searched:
+                mine = ends.q[ends.index == np.searchsorted(searched, i)]
+                parts.append(_new(chain, T[i], mine, found.q[found.index == i], motions.get(i, []), size))
+            seeds[i] = np.concatenate(parts)
+        targets = np.array([i for i in growing if len(seeds[i])], dtype=np.intp)
+        if not len(targets):
+            return found, motions, unclear, beside
+        more = _solutions(chain, T, targets, [seeds[i] for i in targets.tolist()], size)
+        known = found.pick(np.isin(found.index, targets))
+        both = merged(Found(np.searchsorted(targets, known.index), known.q, known.position, known.angle), more)
+        both = both.pick(np.argsort(both.index, kind="stable"))
+        again, said, doubtful, near_by = listed_once(chain, solver, T[targets], both, size, limits, rest, near)
+        number = np.bincount(again.index, minlength=len(targets)) - np.bincount(known.index, minlength=len(T))[targets]
+        # A new self-motion may have taken up solutions that seemed to stand alone.
+        new = [len(said.get(k, ())) > len(motions.get(i, ())) for k, i in enumerate(targets.tolist())]
+        grown = np.flatnonzero((number > 0) | np.array(new))
+        growing = targets[grown].tolist()
+        if not growing:
+            return found, motions, unclear, beside
+        again = again.pick(np.isin(again.index, grown))
+        kept = found.pick(~np.isin(found.index, growing))
+        found = merged(kept, Found(targets[again.index], again.q, again.position, again.angle))
+        found = found.pick(np.argsort(found.index, kind="stable"))
+        motions |= {int(targets[k]): said[k] for k in grown.tolist() if k in said}
+        unclear = np.union1d(unclear, targets[np.intersect1d(doubtful, grown)])
+        beside[growing] += near_by[grown]
+    return found, motions, np.union1d(unclear, np.array(growing, dtype=np.intp)), beside
+
+
+def _crossing(chain: Chain, T: Array, motions: list[Motion], size: float) -> Array:
+    """Members (k, n) [rad | m] of the curves that leave the crossings of known ones, which are among them."""
+    at = crossings([motion.curve for motion in motions], chain, T, size)
+    if not len(at):
+        return at
+    curves = [part for curve in families(chain, T[None], at, size).curves[0] for part in curve.sheets or (curve,)]
+    members = np.array([curve.q[int(AMID * len(curve.q))] for curve in curves]).reshape(-1, chain.n)
+    return members[~_on(chain, T, members, motions, size)]
+
+
+def _searched(chain: Chain, T: Array, size: float) -> Found:
+    """Solutions (s, n) of targets T (m, 4, 4) that steps from random configurations end at."""
+    span = np.where(chain.revolute, np.pi, size)
+    start = np.random.default_rng(11).uniform(-span, span, (GUESSES, chain.n))
+    index = np.repeat(np.arange(len(T)), GUESSES)
+    q, error = descend(chain, T[index], np.tile(start, (len(T), 1)), size, steps=GUESS_STEPS)
+    position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
+    return Found(index, q, position * size, angle).pick((position <= CLOSES) & (angle <= CLOSES))
+
+
+def _new(chain: Chain, T: Array, ends: Array, q: Array, motions: list[Motion], size: float) -> Array:
+    """Which of solutions (k, n) [rad | m] are neither listed, in q (s, n), nor on a self-motion that is known."""
+    gap = turned_gap(chain, (ends[:, None] - q[None]) / np.where(chain.revolute, 1.0, size))
+    ends = ends[np.all(np.max(np.abs(gap), axis=2) > KNOWN, axis=1)]
+    return np.asarray(ends[~_on(chain, T, ends, motions, size)])
+
+
+def _on(chain: Chain, T: Array, q: Array, motions: list[Motion], size: float) -> Flags:
+    """(k,) whether configurations (k, n) are on self-motions."""
+    on = np.zeros(len(q), dtype=bool)
+    for motion in motions:
+        rest = np.flatnonzero(~on)
+        on[rest] = on_curve(motion.curve, chain, T, q[rest], size)
+    return on
+
+
+def _solutions(chain: Chain, T: Array, targets: Index, seeds: list[Array], size: float) -> Found:
+    """Configurations of some targets (k,) that close, numbered as in these."""
+    index = np.repeat(np.arange(len(targets)), [len(part) for part in seeds])
+    q = np.concatenate(seeds)
+    error, _ = error_and_jacobian(chain, T[targets[index]], q, size)
+    position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
+    return Found(index, q, position * size, angle).pick((position <= CLOSES) & (angle <= CLOSES))

@@ -1,0 +1,269 @@
+"""Next to singular poses: solutions that nearly meet, self-motions that nearly are, what may be said of the list."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from inverse.arms import configurations, random_chain
+from inverse.judge import faults, listed
+from inverse.loops import RIGHT, parallel_loop, spherical_loop
+from inverse.truth import Scale, least_singular_value, search
+
+import robokin
+from robokin.inverse.analysis import analysis_of, trial_closing
+from robokin.inverse.homotopy import Homotopy
+from robokin.inverse.loop import loop_of
+from robokin.inverse.monodromy import two_starts
+from robokin.inverse.parallel import ThreeParallel
+from robokin.inverse.spherical import SphericalTriple
+from robokin.kinematics.chain import chain_of
+from robokin.model import Joint, JointType, Robot
+
+SCARAS = ("scara", "adept-one", "tp80")
+
+
+def in_si(robot, q):
+    """Joint values from degrees and millimetres."""
+    return np.where(robot.revolute, np.radians(q), np.asarray(q) / 1000.0)
+
+
+def answered(robot, q):
+    """The answer to the pose of q: (n,) [rad | m], and the laws that it breaks."""
+    T = robokin.forward_kinematics(robot, q)
+    result = robokin.solve_ik(robot, T)
+    return result, faults(robot, Scale(robot), q, T, result)
+
+
+@pytest.mark.parametrize(
+    ("name", "q"),
+    [
+        ("crx10ia-lp", [-179.9999497903, 135.0000113712, -269.9999592868, 9.95356e-06, 180.0, 224.999951469]),
+        ("crx3ia", [-90.000030359, -180.0, 90.0000309494, 179.9999502569, 90.0000450105, -179.9999688021]),
+        ("epson-g6-651s", [89.9999703078, 5.36084e-05, 89.9992580009, -180.0000238943]),
+        ("i4-650h", [89.9999926624, -5.383e-05, 0.000621971, 90.0000133246]),
+        ("j2n6s200", [180.0000157999, 179.9999686488, 179.99995383, 2.93009e-05, -5.11627e-06, 4.65088e-05]),
+        ("j2s6s300", [90.0000179549, 180.0000055598, 179.9999567229, 180.0000219808, 269.9999763492, 90.000012055]),
+        ("rx160l", [-45.0000054829, -89.9999467501, -5.48196e-05, -45.0000431558, -89.9999657572, 44.9999752078]),
+        ("stanford", [180.0000390029, 7.64963e-06, 787.399909392, -44.999993249, -89.9999966657, -5.34148e-05]),
+    ],
+)  # fmt: skip
+def test_two_roots_that_joint_values_hardly_tell_apart_are_listed_once(name, q):
+    """They are 1.5e-6 apart, and the pose midway is off by 1e-13."""
+    robot = robokin.load(name)
+    _, broken = answered(robot, in_si(robot, q))
+    assert broken == []
+
+
+@pytest.mark.parametrize(
+    ("name", "q"),
+    [
+        ("crx20ia-l", [-90.000019602, 1.56636e-05, 89.9999980853, -90.0000468192, -3.77675e-05, 90.0000377606]),
+        ("hc10", [-90.0000381726, -180.0, 4.87852e-05, -45.0000022374, 179.999987828, -179.9999469354]),
+        ("irb1600", [-179.9999481469, -6.05401e-07, -90.0000098636, 90.000023869, -4.72607e-05, 1.53845e-06]),
+    ],
+)  # fmt: skip
+def test_what_leaves_the_pose_by_rounding_only_is_a_self_motion(name, q):
+    """Along a curve of two rad the error is below 1e-12: members of it were listed as solutions that stand alone."""
+    robot = robokin.load(name)
+    result, broken = answered(robot, in_si(robot, q))
+    assert broken == []
+    assert result.families
+
+
+@pytest.mark.parametrize("name", SCARAS)
+def test_a_straight_scara_has_one_solution_and_that_is_said(name, rng):
+    robot = robokin.load(name)
+    q = configurations(robot, Scale(robot), rng, 2, "grid 30")
+    q[:, 1] = 0.0
+    for one in q:
+        result, broken = answered(robot, one)
+        assert broken == []
+        assert len(result.solutions) == 1
+        assert result.complete, result.certificate
+
+
+@pytest.mark.parametrize("name", ["stanford", "stanford-rtb"])
+def test_a_slide_beside_a_straight_wrist_leaves_nothing_open(name, rng):
+    """The wrist's self-motions are all there are where the levers of the other axes are long."""
+    robot = robokin.load(name)
+    for one in configurations(robot, Scale(robot), rng, 8, "grid 45"):
+        result, broken = answered(robot, one)
+        assert broken == []
+        short = any(len(family.joints) > 2 for family in result.families)
+        assert result.complete or short, result.certificate
+
+
+def test_an_axis_through_the_wrist_is_no_reason_to_call_a_list_complete():
+    """The first joint of a spherical arm is free where the wrist stands on its axis: not only the wrist's turns are."""
+    rows = [
+        Joint("q1", JointType.REVOLUTE, d=0.4, alpha=-RIGHT),
+        Joint("q2", JointType.REVOLUTE, alpha=RIGHT),
+        Joint("q3", JointType.PRISMATIC, limits=(0.1, 1.0)),
+        Joint("q4", JointType.REVOLUTE, alpha=-RIGHT),
+        Joint("q5", JointType.REVOLUTE, alpha=RIGHT),
+        Joint("q6", JointType.REVOLUTE, d=0.1),
+    ]
+    robot = Robot("spherical arm", tuple(rows))
+    analysis = analysis_of(robot)
+    for second, fifth, few in ((0.4, 0.7, True), (0.4, 0.0, True), (0.0, 0.7, False)):
+        T = robokin.forward_kinematics(robot, [0.3, second, 0.5, 0.3, fifth, 0.2])
+        marks = analysis.solver.candidates(analysis.loop.closing(T[None]))
+        assert marks.few.tolist() == [few]
+        assert marks.near.tolist() == [fifth == 0.0 or not few]
+
+
+@pytest.mark.parametrize("off", [1e-5, 3e-6, 1e-6])
+@pytest.mark.parametrize("name", ["lrmate200ic", "puma560", "tx2-90", "xarm6"])
+def test_a_wrist_that_is_nearly_straight_is_counted(name, off):
+    """Newton's steps in complex numbers tell the ends of paths apart that are nearly singular."""
+    robot = robokin.load(name)
+    q = np.radians([40.0, -50.0, 60.0, 30.0, 0.0, 20.0])
+    q[4] += off
+    if name == "xarm6":
+        q = np.radians([20.0, -30.0, -60.0, 0.0, 60.0, 10.0]) + off * np.array([0.3, -0.2, 0.5, 0.4, -0.1, 0.2])
+    result, broken = answered(robot, q)
+    assert broken == []
+    assert result.complete, result.certificate
+
+
+def test_the_ends_of_paths_at_a_double_root_are_not_told_apart():
+    robot = robokin.load("puma560")
+    loop = loop_of(chain_of(robot))
+    homotopy = Homotopy(loop)
+    q = np.tile([0.3, 0.5, 0.0, 0.4, 0.9, 0.2], (2, 1))
+
+    def side(elbow):
+        return np.sign(np.linalg.det(robokin.jacobian(robot, [*q[0, :2], elbow, *q[0, 3:]])))
+
+    low, high = -1.5238, -1.5240  # between them the elbow is straight
+    assert side(low) != side(high)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if side(middle) == side(low) else (low, middle)
+    q[:, 2] = low
+    q[1, 2] += 3e-5
+    account = homotopy.account(loop.closing(robokin.forward_kinematics(robot, q)))
+    assert account.regular[0] < account.count
+    assert account.singular[0]
+    assert account.regular[1] == account.count
+
+
+@pytest.mark.parametrize("k", range(4))
+def test_chains_next_to_round_poses(k):
+    """What is called complete there lacks nothing that Newton's method finds."""
+    rng = np.random.default_rng([77, k])
+    robot = random_chain(rng)
+    scale = Scale(robot)
+    for q in configurations(robot, scale, rng, 2, ("round + 1e-06", "round + 1e-09")[k % 2]):
+        T = robokin.forward_kinematics(robot, q)
+        result = robokin.solve_ik(robot, T)
+        known = search(robot, scale, T, rng, guesses=100)[0] if result.complete else ()
+        broken = faults(robot, scale, q, T, result, known)
+        assert [law for law in broken if law != "on no family" or result.complete] == []
+
+
+# How many solutions a closed form's equations have ----------------------------------------------------------------
+
+
+def number_of(loop):
+    """N by another way: tours of complex targets."""
+    found = two_starts(loop)
+    return None if found is None else found[0].values.shape[1]
+
+
+@pytest.mark.parametrize("name", ["stanford", "z1", "scorbot-er4u"])
+def test_a_closed_form_has_no_fewer_branches_than_there_are_solutions(name):
+    analysis = analysis_of(robokin.load(name))
+    number = number_of(analysis.loop)
+    assert number is not None
+    assert analysis.number >= number
+
+
+@pytest.mark.parametrize(
+    ("form", "make", "types"),
+    [
+        (SphericalTriple, spherical_loop, "RPR"),
+        (SphericalTriple, spherical_loop, "PRR"),
+        (ThreeParallel, parallel_loop, "RRP"),
+    ],
+)
+def test_random_loops_with_closed_forms_have_no_more_solutions_than_branches(form, make, types, rng):
+    loop = make(rng, 1, types, True)
+    number = number_of(loop)
+    assert number is None or form.find(loop).candidates(trial_closing(loop)).leaves >= number
+
+
+def test_the_poses_here_are_what_they_are_meant_to_be():
+    robot = robokin.load("lrmate200ic")
+    q = np.radians([40.0, -50.0, 60.0, 30.0, 0.0, 20.0])
+    q[4] += 1e-6
+    least = least_singular_value(robot, Scale(robot), q)
+    assert 1e-8 < least < 1e-6
+    assert len(listed(robot, robokin.solve_ik(robot, robokin.forward_kinematics(robot, q), limits=False))) >= 2
+
+
+# Limits -----------------------------------------------------------------------------------------------------------
+
+
+def with_limits(robot, limits):
+    """The robot with other limits: (n, 2) [rad | m]."""
+    rows = tuple(replace(row, limits=tuple(ends)) for row, ends in zip(robot.rows, limits.tolist(), strict=True))
+    return Robot(robot.name, rows, convention=robot.convention)
+
+
+def limits_around(robot, q, rng):
+    """Limits that q: (n,) is just within: equal ones, some an ulp apart, one-sided ones, none, and more than a turn."""
+    out = np.empty((robot.n, 2))
+    for k, value in enumerate(q):
+        turn, ulp = 2 * np.pi if robot.revolute[k] else 1.0, np.spacing(abs(value))
+        ways = (
+            (value, value + 0.7),
+            (value - 0.7, value),
+            (value, value),
+            (value - ulp, value + ulp),
+            (value, np.inf),
+            (-np.inf, value),
+            (value - 2 * turn, value + 0.3),
+            (-np.inf, np.inf),
+        )
+        out[k] = ways[rng.integers(len(ways))]
+    return out
+
+
+@pytest.mark.parametrize("kind", ["grid 90", "round + 1e-08", "round + 1e-07", "round + 1e-06"])
+@pytest.mark.parametrize("name", ["kr5-scara-r350", "cobra-s800", "xmate-cr7", "irb140"])
+def test_limits_that_a_configuration_is_just_within(name, kind):
+    """What stands for two roots that nearly meet may be outside the limits where one of the two is inside."""
+    base = robokin.load(name)
+    rng = np.random.default_rng([5, len(name), len(kind)])
+    for q in configurations(base, Scale(base), rng, 2, kind):
+        robot = with_limits(base, limits_around(base, q, rng))
+        _, broken = answered(robot, q)
+        assert broken == [], (np.degrees(q).tolist(), robot.limits.tolist())
+
+
+def test_a_self_motion_whose_members_count_twice_is_within_exact_limits():
+    """The arm is stretched and its wrist straight: Newton's steps alone leave half of the digits."""
+    base = robokin.load("tx2-60")
+    q = np.radians([0.0, 0.0, 0.0, -270.0, 0.0, 90.0])
+    limits = np.stack([q, q], axis=1)
+    limits[3, 1] += 1.6
+    limits[5, 0] -= 2.0
+    result, broken = answered(with_limits(base, limits), q)
+    assert broken == []
+    assert result.solutions[0].free == (4, 6)
+    assert np.max(np.abs(result.solutions[0].q[:3])) < 1e-12
+
+
+@pytest.mark.parametrize("name", ["ur5e", "big-yam", "cobra-s600", "crx10ia", "scorbot"])
+def test_without_limits_the_wish_itself_is_first_however_often_its_joints_are_turned(name):
+    robot = robokin.load(name)
+    rng = np.random.default_rng(8)
+    for kind in ("random", "grid 45", "round + 1e-09"):
+        q = configurations(robot, Scale(robot), rng, 1, kind)[0]
+        q = q + 2 * np.pi * rng.integers(-2, 3, robot.n) * robot.revolute
+        result = robokin.solve_ik(robot, robokin.forward_kinematics(robot, q), limits=False, near=q)
+        assert np.max(np.abs(result.solutions[0].q - q)) < 1e-6
+        assert result.solutions[0].within_limits == bool(robot.within_limits(result.solutions[0].q))
