@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench completeness wheel docs clean
+.PHONY: help demo test lint bench completeness coverage wheel docs clean
 
 help:            ## what can be made
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
@@ -30,6 +30,9 @@ bench: $(VENV)/installed ## speed, as ratios against peers and limits, in one ru
 
 completeness: $(VENV)/installed ## whether all solutions are all, counted; make completeness FULL=1 takes hours
 	FULL=$(FULL) $(BIN)/python -m benchmarks.completeness
+
+coverage: $(VENV)/installed ## whether the bounds of sizes hold as often as they say; make coverage FULL=1 takes hours
+	FULL=$(FULL) $(BIN)/python -m benchmarks.coverage
 
 wheel: $(VENV)/installed ## build the wheel and run it alone, outside this folder
 	PYTHON=$(BIN)/python tests/wheel.sh

@@ -32,6 +32,7 @@ from robokin.workspace.cells import cells_of
 from robokin.workspace.membership import Membership, finitely_many
 from robokin.workspace.result import Workspace
 from robokin.workspace.space import Space, space_of
+from robokin.workspace.stages import about, stage
 
 PLOTS = (".png", ".svg", ".pdf", ".html")
 
@@ -53,8 +54,14 @@ def report(
     cores = arguments["cores"]
     # What is asked for must exist before the work begins.
     views = [asked_views(space_of(robot), units, *asked) for robot in robots]
-    found = [analyse_workspace(robot, **arguments) for robot in robots]
-    cuts = [[_cut(view, arguments) for view in own] for own in views]
+    found, cuts = [], []
+    for robot, own in zip(robots, views, strict=True):
+        about(robot.name if len(robots) > 1 else "")
+        found.append(analyse_workspace(robot, **arguments))
+        cuts.append([_cut(view, arguments) for view in own])
+    about("")
+    if plot is not None or (kind == "table" and len(robots) == 1):
+        stage("picture")
     if plot is not None:
         _draw(plot, found, views, cuts, units, cores)
     if kind == "table":
@@ -115,6 +122,7 @@ def _teller(units: Units) -> Callable[[float], str]:
 
 def _cut(view: View, arguments: dict[str, Any]) -> Cut:
     """What is reachable in a plane, with its area."""
+    stage(f"area of the {view.title}")
     budget = max(arguments["samples"] // CUT_POINTS, LEAST_POINTS)
     seed, cores = arguments["seed"], arguments["cores"]
     area, cells = cells_of(Membership(view.space), plane_region(view), budget, seed, cores)
@@ -204,7 +212,12 @@ def comparison(found: Sequence[Workspace], views: Sequence[list[View]], units: U
             panels.append(replace(drawn, title=title))
     if not panels:
         raise InputError("--plot: these sets are no areas and no solids, expected --plot without --compare")
-    sizes = [f"{one.space.quantity} {size_text(one.measure, one.space.dimension, units)}" for one in found]
+    sizes = [
+        f"{one.space.quantity} {size_text(one.measure, one.space.dimension, units)}"
+        if one.space.dimension
+        else "a point"
+        for one in found
+    ]
     return Picture(" and ".join(one.space.robot.name for one in found), "  ·  ".join(sizes), units, panels)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from robokin.cli.output.numbers import counted, show
 from robokin.cli.output.tables import WIDTH, heading, pairs, render, table
-from robokin.cli.workspaces import GROUPS, WORDS, Cut, known, ranges_of
+from robokin.cli.workspaces import GROUPS, WORDS, Cut, holds_at_a_point, known, ranges_of
 from robokin.units import Units
 from robokin.workspace.orientation import Place
 from robokin.workspace.result import Dexterity, Measure, Workspace
@@ -29,6 +29,9 @@ SMALL = 1e-6
 
 DECIMALS = {"m": 4, "cm": 2, "mm": 1, "in": 3}
 """Decimals of a bound: what shows in a table is exact to them."""
+
+NOT_PROVEN = "no: not found by search (not proven unreachable)"
+"""What is said below places, of which one is not reached and might be."""
 
 KINDS = {0: "a point", 1: "a curve", 2: "a surface", 3: "a solid"}
 
@@ -92,7 +95,7 @@ def comparison_table(found: Sequence[Workspace], units: Units, cuts: Sequence[Se
 def _kind(found: Workspace) -> str:
     space = found.space
     flat = space.basis is not None and space.dimension < 3
-    kind = {1: "a line", 2: "part of a plane"}.get(space.dimension, "") if flat else KINDS[space.dimension]
+    kind = {0: "a point", 1: "a line", 2: "part of a plane"}[space.dimension] if flat else KINDS[space.dimension]
     return kind + (", symmetric about the first axis" if space.axis is not None else "")
 
 
@@ -109,6 +112,12 @@ def _dexterity(dexterity: Dexterity, found: Workspace, units: Units) -> list[tup
         "more than one": (dexterity.several, "the lecture's dextrous set"),
         "every one": (dexterity.every, "the standard dextrous set"),
     }
+    if not dimension:
+        holds = holds_at_a_point(dexterity).values()
+        return entries + [
+            (f"  {name}", f"{'yes' if there else 'no'}: {whose}")
+            for (name, (_, whose)), there in zip(sets.items(), holds, strict=True)
+        ]
     for name, (measure, whose) in sets.items():
         part = f", {100.0 * measure.value / dexterity.some.value:.1f} %" if dexterity.some.value > 0.0 else ""
         entries.append((f"  {name}", f"{size_text(measure, dimension, units)}{part}: {whose}"))
@@ -159,7 +168,8 @@ def places_table(places: Sequence[Place], name: str, units: Units) -> bytes:
             *point, "yes" if place.reachable else "no", solutions_text(place), orientations_text(place, units)
         )
     rest = f"lengths in {units.length}, angles in {units.angle}"
-    return render(heading(name, rest), "", drawn)
+    notes = [] if all(place.proven for place in places) else ["", NOT_PROVEN]
+    return render(heading(name, rest), "", drawn, *notes)
 
 
 def solutions_text(place: Place) -> str:

@@ -107,6 +107,7 @@ def dexterity_record(dexterity: Dexterity, found: Workspace, units: Units) -> di
     """How freely the tool can be turned: the three sets, and the map place by place."""
     quantity, dimension = found.space.quantity, found.space.dimension
     measures = {"reachable": dexterity.some, "several": dexterity.several, "every": dexterity.every}
+    holds = holds_at_a_point(dexterity)
     return {
         "group": dexterity.group,
         "orientation": GROUPS[dexterity.group],
@@ -114,7 +115,10 @@ def dexterity_record(dexterity: Dexterity, found: Workspace, units: Units) -> di
         "spacing": dexterity.spacing / units.radians,
         "mean": dexterity.mean if dexterity.orientations else None,
         "sets": {
-            name: {"needs": SETS[name], **measure_record(measure, quantity, dimension, units)}
+            name: {
+                "needs": SETS[name],
+                **(measure_record(measure, quantity, dimension, units) if dimension else {"holds": holds[name]}),
+            }
             for name, measure in measures.items()
         },
         "map": {
@@ -123,6 +127,16 @@ def dexterity_record(dexterity: Dexterity, found: Workspace, units: Units) -> di
             "points": (dexterity.points / units.metres + 0.0).tolist(),
             "fraction": dexterity.fraction.tolist(),
         },
+    }
+
+
+def holds_at_a_point(dexterity: Dexterity) -> dict[str, bool]:
+    """Of a set that is one point, which of the three sets that is in."""
+    every = dexterity.orientations > 0 and dexterity.mean == 1.0
+    return {
+        "reachable": True,
+        "several": (dexterity.group != "finite" and dexterity.mean > 0.0) or dexterity.group == "curve",
+        "every": every,
     }
 
 
@@ -146,6 +160,7 @@ def place_record(place: Place, robot: str, units: Units) -> dict[str, Any]:
         "units": units.as_record(),
         "position": _lengths(place.point, units),
         "reachable": place.reachable,
+        "reachable_is_proven": place.proven,
         "solutions": place.solutions,
         "group": place.group,
         "orientation": GROUPS[place.group],
@@ -209,7 +224,10 @@ def flat_row(record: dict[str, Any]) -> dict[str, Any]:
     }
     if record["dexterity"]:
         for name, figures in record["dexterity"]["sets"].items():
-            row |= {name: figures[quantity], f"{name}_error": figures[f"{quantity}_error"]}
+            if quantity:
+                row |= {name: figures[quantity], f"{name}_error": figures[f"{quantity}_error"]}
+            else:
+                row[name] = str(figures["holds"]).lower()
         row["mean"] = record["dexterity"]["mean"]
     return {name: "" if value is None else value for name, value in row.items()}
 

@@ -244,7 +244,8 @@ def _cloud(axes: Any, cloud: Cloud, scale: float, unit: str) -> Any:
     low, high = points.min(axis=0), points.max(axis=0)
     for arm in cloud.arms:
         low, high = np.minimum(low, arm.min(axis=0) * scale), np.maximum(high, arm.max(axis=0) * scale)
-    size = np.maximum(high - low, 0.05 * np.max(high - low))
+    # A point stands in the middle of a unit's cube.
+    size = np.maximum(high - low, 0.05 * np.max(high - low) or 1.0)
     middle = 0.5 * (low + high)
     axes.set(
         xlim=(middle[0] - size[0] / 2, middle[0] + size[0] / 2),

@@ -6,11 +6,12 @@ from robokin.errors import InputError
 from robokin.model import Robot
 from robokin.workspace.extremes import extent
 from robokin.workspace.measure import REDUNDANT, measurable, measure, structural_length
-from robokin.workspace.membership import finitely_many
-from robokin.workspace.orientation import dexterity
+from robokin.workspace.membership import decided
+from robokin.workspace.orientation import SPARE, dexterity
 from robokin.workspace.result import Measure, Workspace
 from robokin.workspace.sequence import KINDS, Kind
 from robokin.workspace.space import space_of
+from robokin.workspace.stages import stage
 
 SAMPLES = 1 << 17
 """Configurations that the answers are made from unless it is said otherwise."""
@@ -43,18 +44,22 @@ def analyse_workspace(
     if sampling not in KINDS:
         raise InputError(f"found sampling '{sampling}', expected {' or '.join(KINDS)}")
     space = space_of(robot)
+    stage("bounds")
     bounds = extent(space, seed)
     notes, cells = [], None
+    stage(space.quantity)
     if measurable(space):
         size, cells = measure(space, bounds, samples, seed, cores)
     else:
         notes.append(f"the {space.quantity} of a curved set that more joints reach than it has dimensions is not known")
         size = Measure(float("nan"), float("nan"), "not measured", 0)
-    if space.moving and not finitely_many(space):
+    if not decided(space):
         notes.append(REDUNDANT)
     length = structural_length(robot)
     solid = space.dimension == 3 and size.value > 0.0
     freedom = dexterity(space, bounds, size, samples, seed, voxel, cores) if dextrous else None
+    if freedom is not None and freedom.orientations and not freedom.every.exact:
+        notes.append(SPARE)
     return Workspace(
         space=space,
         samples=samples,

@@ -20,7 +20,7 @@ from robokin.spatial import rotation_from_axis_angle
 from robokin.workspace.attitudes import Attitudes, small_turns
 from robokin.workspace.parallel import in_order
 from robokin.workspace.space import Space
-from robokin.workspace.trials import every, reached_with, table
+from robokin.workspace.trials import every, reached_with, reached_with_more, table
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -70,7 +70,7 @@ class Every:
         passed = np.ones(len(points), dtype=bool)
         for k in range(near.shape[1]):
             left = np.flatnonzero(passed)
-            passed[left] = reached_with(self.space, self.tried.task, points[left], near[left, k])
+            passed[left] = reached_with_more(self.space, self.tried.task, points[left], near[left, k])
         passed[passed] = every(self.space, self.tried, self.order, points[passed])
         return passed
 

@@ -6,7 +6,10 @@ that stand at a limit and would be pushed over it left out (an active set, found
 box, undone where the distance grew, and damped by λ = μ |e|, μ following the success of the steps.
 
 What ends a search is the distance (reached) or a point where no step within the limits comes nearer (a boundary of
-the set, or a barrier inside it). On a barrier other starts go on; the answer "not reachable" is that of all of them.
+the set, or a barrier inside it). On a barrier other starts go on: some near the point and some from anywhere; then one
+from each face of the joint box, then one from each edge (faces.py), for those from the inside may all stand before the
+same barrier; what comes near is followed to the last. The answer "not reachable" is that of all of them. Where closed
+forms give the answer (one_spare.py), they follow the first searches instead.
 """
 
 from __future__ import annotations
@@ -16,7 +19,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.workspace.damped_newton import newton_step
 from robokin.workspace.extremes import extent, outermost
+from robokin.workspace.faces import edges_of, faces_of
+from robokin.workspace.one_spare import one_spare_of
 from robokin.workspace.placing import Placing, crossed
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.space import Space
@@ -38,8 +44,15 @@ must be stretched to the last: what is left to gain is little, and the steps are
 STUCK_CLOSE, STEPS_CLOSE = 1e-3, 60
 """The same two limits for these."""
 
-MU, FLOOR, LEAST = 0.1, 1e-2, 1e-11
-"""The damping at first and the least pivot, as parts of the distance, and of both what is always added [1]."""
+NEARLY, STUCK_LAST, STEPS_LAST = 1e-3, 1e-6, 300
+"""Searches that ended this near [size] are followed to their very end: next to a singular configuration each step
+gains a part of the distance only."""
+
+NEAR_LAST = 3
+"""Starts on each face for these."""
+
+MU = 0.1
+"""The damping at first, as a part of the distance."""
 
 POOL = 2048
 """Searches that go on together: their columns stay in cache."""
@@ -81,7 +94,12 @@ class Descent:
         self.centre = space.centre
         self.scale = np.where(self.placing.revolute, 1.0, space.size)[:, None]
         self.lever = self.scale[:, :, None] / space.size
-        self.starts = Starts(self.placing, self.low, self.high, self.full, space.size, _outer(space))
+        self.starts = Starts(self.placing, self.low, self.high, _outer(space))
+        self.exact = one_spare_of(space)
+        box = self.placing, self.low, self.high, self.full
+        spare = len(moving) > space.dimension and self.exact is None
+        self.tables = [faces_of(*box), edges_of(*box)] if spare else []
+        self.every_table, self.learned = self.tables, list[Starts]()
         # Samples of many joints lie close together; what they leave empty may well be reached.
         self.extent = extent(space) if len(moving) > MANY else None
         # A joint that makes a whole turn may go round more than once.
@@ -90,6 +108,11 @@ class Descent:
     def reachable(self, points: Array) -> Flags:
         """(m,) whether each of the points (m, 3) [m] is reached."""
         return self.reached(points)[0]
+
+    def hurry(self) -> None:
+        """Leave out the starts on edges until some are learned: for a million points, of which witnesses tell how
+        many are denied."""
+        self.tables = self.tables[:1]
 
     def lacks(self, points: Array) -> Array:
         """(m, 3) [m] the vectors from the nearest position that was found to points (m, 3): zero where reached, NaN
@@ -113,6 +136,11 @@ class Descent:
             part = in_plane[start : start + BATCH]
             inside[part], values[:, part] = self._sought(p[:, part])
         return inside, values
+
+    def learn(self, q: Array) -> None:
+        """Begin searches also at configurations q (n, k) [rad | m], since they lead where no others did."""
+        self.tables = self.every_table
+        self.learned.append(Starts(self.placing, self.low, self.high, more=q, kept=0))
 
     def _beyond(self, points: Array) -> Flags:
         """(m,) whether points (3, m) [m] lie so far from what can be reached that they need not be sought."""
@@ -142,7 +170,25 @@ class Descent:
             starts = np.concatenate([values[None][:, :, close], others])
             ends = [(STUCK_CLOSE, STEPS_CLOSE)] + [(STUCK, STEPS)] * len(others)
             self._search(points, close, starts, ends, inside, least, values)
+        self._escalate(points, inside, least, values)
         return inside, values
+
+    def _escalate(self, points: Array, inside: Flags, least: Array, values: Array) -> None:
+        """Whatever else can be done for those of points (3, m) that no search has reached yet."""
+        left = np.flatnonzero(~inside)
+        if self.exact is not None and len(left):
+            there, q = self.exact.reached(np.ascontiguousarray(points[:, left].T))
+            inside[left[there]], values[:, left[there]] = True, q[:, there]
+        for tables in [*self.tables, self.learned]:
+            left = np.flatnonzero(~inside)
+            if len(left) and tables:
+                starts = np.concatenate([table.near(points[:, left], 1, 0) for table in tables])
+                self._search(points, left, starts, [(STUCK, STEPS)] * len(starts), inside, least, values)
+        left = np.flatnonzero(~inside & (least <= NEARLY**2))
+        if len(left):
+            more = [table.near(points[:, left], NEAR_LAST, 0) for table in (self.tables or [[]])[0]]
+            starts = np.concatenate([values[None][:, :, left], *more])
+            self._search(points, left, starts, [(STUCK_LAST, STEPS_LAST)] * len(starts), inside, least, values)
 
     def _search(
         self,
@@ -199,12 +245,12 @@ class Descent:
         at_low, at_high = q <= self.box[0], q >= self.box[1]
         pull = np.sum(J * e, axis=1)
         held = (at_low & (pull < 0.0)) | (at_high & (pull > 0.0))
-        dq, gain = _newton(J, H, pull, held, far, mu)
+        dq, gain = newton_step(J, H, pull, held, far, mu)
         pushed = ((at_low & (dq < 0.0)) | (at_high & (dq > 0.0))) & ~held
         again = np.flatnonzero(pushed.any(axis=0))
         if len(again):
             J, H, pull, far, mu = (part.take(again, axis=-1) for part in (J, H, pull, far, mu))
-            dq[:, again], gain[again] = _newton(J, H, pull, (held | pushed)[:, again], far, mu)
+            dq[:, again], gain[again] = newton_step(J, H, pull, (held | pushed)[:, again], far, mu)
         dq *= np.minimum(1.0, STEP / np.maximum(np.max(np.abs(dq), axis=0), 1e-300))
         return dq * self.scale, gain
 
@@ -270,45 +316,6 @@ class _Pool:
         if len(out):
             self._keep(np.flatnonzero(~over))
         return answer
-
-
-def _newton(J: Array, H: Array, pull: Array, held: Flags, far: Array, mu: Array) -> tuple[Array, Array]:
-    """Newton's step (n, m) with some joints held, and what it promises to take off |e|² (m,), infinite where the
-    second derivatives are not those of a minimum."""
-    n = len(J)
-    damping = np.sqrt(far)
-    floor = FLOOR * damping + LEAST
-    damping *= mu
-    damping += LEAST
-    y = pull
-    if held.any():
-        free = np.where(held, 0.0, 1.0)
-        J, H, y = J * free[:, None], H * free[:, None], y * free
-    else:
-        y = y.copy()
-    # Only what is on and right of the diagonal counts; it is brought to L D Lᵀ row by row.
-    A = H[:, None, 0] * J[None, :, 0]
-    A += H[:, None, 1] * J[None, :, 1]
-    A += H[:, None, 2] * J[None, :, 2]
-    plain = np.ones(len(far), dtype=bool)
-    for j in range(n):
-        pivot = A[j, j]
-        pivot += damping
-        plain &= pivot > 0.0
-        np.abs(pivot, out=pivot)
-        np.maximum(pivot, floor, out=pivot)
-        row = A[j, j + 1 :].copy()
-        A[j, j + 1 :] /= pivot
-        for i in range(j + 1, n):
-            A[i, i:] -= A[j, i] * row[i - j - 1 :]
-        y[j + 1 :] -= A[j, j + 1 :] * y[j]
-    diagonal = A[range(n), range(n)]
-    scaled = y / diagonal
-    gain = np.sum(scaled * y, axis=0)
-    for j in reversed(range(n - 1)):
-        scaled[j] -= np.sum(A[j, j + 1 :] * scaled[j + 1 :], axis=0)
-    gain[~plain] = np.inf
-    return scaled, gain
 
 
 _kept: WeakKeyDictionary[Space, Descent] = WeakKeyDictionary()

@@ -6,7 +6,8 @@ Each of the eight questions is the least value over the joint box of
 
 with w = 0 for a bound along ±g, and g = 0, w = ±1 for the least and the greatest distance from c. Three stages:
 
-1. Starts: the best configurations of several parts of an even sequence, so that they are good and far apart.
+1. Starts: the best configurations of several parts of an even sequence, so that they are good and far apart; as many
+   of which some joints are at limits, as they are at extremes; and the best corners of the joint box.
 2. Sweeps: one joint after the other is given its best value, the others being held. That is exact: with a joint's
    axis at o, along z of R, and s what follows it, p = o + R Rot(z, θ) s, so that with h = Rᵀ(g + w (o - c))
 
@@ -24,6 +25,7 @@ The sweeps are coordinate descent, whose limit points are stationary (D. P. Bert
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -43,10 +45,19 @@ SAMPLES = 1 << 14
 STARTS = 32
 """Starts for each question: the best of every 32nd configuration."""
 
+EDGES = 1 << 12
+"""Further configurations with some joints at limits, from which as many starts come."""
+
+ON_EDGE = 0.4
+"""Chance that a joint is at one of its limits in these."""
+
+MOST_CORNERS, CORNERS = 1 << 10, 16
+"""Corners of the joint box that are looked at, and starts for each question that are the best of them."""
+
 SWEEPS = 12
 """Times that each joint is given its best value: the valleys of these functions are not long."""
 
-POLISHED = 8
+POLISHED = 16
 """Ends of the sweeps, for each question, that Newton's method goes on from."""
 
 STEPS = 60
@@ -150,24 +161,43 @@ def _best(space: Space, origin: Array, seed: int) -> Array:
     box = _scaled(space)
     unit = np.where(box.chain.revolute, 1.0, space.size)
 
-    samples = joint_values(space, "sobol", seed, 0, SAMPLES, SAMPLES)
+    samples = np.concatenate([joint_values(space, "sobol", seed, 0, SAMPLES, SAMPLES), _at_limits(space, seed)], axis=1)
     p = positions(space, samples).T / space.size
     starts = []
     for k in range(8):
-        f = eight.taken(np.full(SAMPLES, k)).values(p)
-        starts.append(np.argmin(f.reshape(-1, STARTS), axis=0) * STARTS + np.arange(STARTS))
+        f = eight.taken(np.full(len(p), k)).values(p)
+        for first, last in pairwise((0, SAMPLES, SAMPLES + EDGES)):
+            starts.append(first + np.argmin(f[first:last].reshape(-1, STARTS), axis=0) * STARTS + np.arange(STARTS))
+        starts.append(SAMPLES + EDGES + np.argsort(f[SAMPLES + EDGES :], kind="stable")[:CORNERS])
+    each = 2 * STARTS + len(starts[-1])
     q = samples.T[np.concatenate(starts)][:, list(space.moving)] / unit
-    goals = eight.taken(np.repeat(np.arange(8), STARTS))
+    goals = eight.taken(np.repeat(np.arange(8), each))
 
     for _ in range(SWEEPS):
         f = _sweep(box, goals, q)
-    order = np.argsort(f.reshape(8, STARTS), axis=1, kind="stable")[:, :POLISHED]
-    chosen = (order + STARTS * np.arange(8)[:, None]).ravel()
+    order = np.argsort(f.reshape(8, each), axis=1, kind="stable")[:, :POLISHED]
+    chosen = (order + each * np.arange(8)[:, None]).ravel()
     q, goals = q[chosen], goals.taken(chosen)
     f = _polish(box, goals, q)
     best: Array = q[np.argmin(f.reshape(8, POLISHED), axis=1) + POLISHED * np.arange(8)] * unit
     low, high, full = (whole[list(space.moving)] for whole in (space.low, space.high, space.full))
     return np.where(full, low + np.mod(best - low, TURN), np.clip(best, low, high))
+
+
+def _at_limits(space: Space, seed: int) -> Array:
+    """(n, EDGES + c) configurations with some of the moving joints at limits, then c corners of their box."""
+    moving = list(space.moving)
+    rng = np.random.default_rng((seed, 0xC0E5))
+    part, drawn = rng.random((2, len(moving), EDGES))
+    part = np.where(drawn < 0.5 * ON_EDGE, 0.0, np.where(drawn < ON_EDGE, 1.0, part))
+    k = len(moving)
+    count = min(1 << k, MOST_CORNERS)
+    which = np.arange(count) if count == 1 << k else rng.integers(0, 1 << min(k, 62), count)
+    corners = (which >> np.arange(k)[:, None]) & 1
+    q = np.tile(0.5 * (space.low + space.high)[:, None], (1, EDGES + count))
+    width = (space.high - space.low)[moving, None]
+    q[moving] = space.low[moving, None] + width * np.concatenate([part, corners], axis=1)
+    return q
 
 
 def _scaled(space: Space) -> _Box:

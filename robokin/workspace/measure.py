@@ -20,21 +20,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.model import Robot
-from robokin.workspace.cells import Cells, cells_of, points_in
-from robokin.workspace.coarea import STUDENT, coarea_measure
+from robokin.workspace.cells import RISK, Cells, cells_of, points_in, poisson_limit
+from robokin.workspace.coarea import coarea_measure
 from robokin.workspace.descent import descent_of
-from robokin.workspace.membership import Membership, finitely_many, reachable
+from robokin.workspace.membership import Membership, decided, finitely_many, reachable
 from robokin.workspace.parallel import in_order
-from robokin.workspace.region import region_of
+from robokin.workspace.region import Region, region_of
 from robokin.workspace.result import Extent, Measure
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.space import TURN, Space
+from robokin.workspace.witnesses import denied_share
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 DRAWINGS = 8
-"""Independent drawings of those points, whose differences tell the error: STUDENT goes with so many."""
+"""Independent drawings of those points, whose differences tell the error."""
+
+RARE = 30
+"""Points fewer than which tell more by their number than by how it differs from drawing to drawing."""
+
+STUDENT = 3.4995
+"""Student's t for 99 % on both sides and DRAWINGS - 1 degrees of freedom."""
 
 ARC_SHARE = 4
 """One in so many of the points that may be looked at goes to the remaining arcs."""
@@ -53,8 +60,12 @@ MANY = 5
 HALF = np.pi
 """A first joint with less of a turn is not freed: too little of what it then sweeps would be its own."""
 
-REDUNDANT = "that a point is out of reach is what searches from several starts say; it is not proven"
-"""What is to be known of sets that more joints reach than they have dimensions."""
+WITNESSES, LEAST_WITNESSES = 3, 8192
+"""For one in so many samples, and so many at least, a point is sought that the arm is known to reach: the searches must
+deny none."""
+
+REDUNDANT = "points called out of reach were not found by search (not proven unreachable)"
+"""What is to be known of sets that more joints reach than they have dimensions, unless closed forms decide."""
 
 
 def measure(
@@ -77,11 +88,21 @@ def measure(
     if space.axis is None and _symmetric_if_free(space):
         found, cells = _by_freeing(space, extent, max(int(share / BUDGET[2]), 1), seed, cores)
     else:
-        descent_of(space)
         region = region_of(space, extent)
+        denied = _denied(space, region, share, seed, cores)
         found, cells = cells_of(Membership(space), region, max(int(share / BUDGET[len(region.low)]), 1), seed, cores)
-    # What the searches miss of the set is in no bound.
-    return replace(found, exact=False), cells
+        found = replace(found, error=found.error + denied * found.value)
+    return replace(found, exact=decided(space)), cells
+
+
+def _denied(space: Space, region: Region, share: float, seed: int, cores: int | None) -> float:
+    """The part of a set that may be denied by its searches, which have learned all that they can from the arm's own
+    positions; nothing where closed forms decide."""
+    return (
+        0.0
+        if decided(space)
+        else denied_share(space, region, max(int(share / WITNESSES), LEAST_WITNESSES), seed, cores)
+    )
 
 
 def measurable(space: Space) -> bool:
@@ -141,28 +162,29 @@ def _freed(space: Space, extent: Extent) -> tuple[Space, Extent]:
 
 def _by_freeing(space: Space, extent: Extent, samples: int, seed: int, cores: int | None) -> tuple[Measure, Cells]:
     free, wide = _freed(space, extent)
-    descent_of(free)
     region = region_of(free, wide)
+    denied = [_denied(one, region, 0.5 * BUDGET[2] * samples, seed, cores) for one in (free, space)]
     count = max(samples // (ARC_SHARE * DRAWINGS), 1)
     part = max(samples - count * DRAWINGS, 1)
     symmetric, cells = cells_of(Membership(free), region, part, seed, cores)
     stroke = float(space.high[space.moving[0]] - space.low[space.moving[0]])
     arcs = _arcs(space, free, cells, count, seed, cores)
     certain = stroke / TURN
-    value = certain * symmetric.value + float(np.mean(arcs))
-    error = certain * symmetric.error + STUDENT * float(np.std(arcs, ddof=1)) / float(np.sqrt(DRAWINGS))
+    value = certain * symmetric.value + arcs[0]
+    error = certain * symmetric.error + arcs[1]
     # Of what lies in cells thought to be empty the remaining arcs have not been looked at.
     error += (1.0 - certain) * abs(symmetric.value - cells.size)
+    error += certain * denied[0] * symmetric.value + denied[1] * float(np.mean(arcs))
     method = f"{symmetric.method}; the first joint's limits by points on the arcs that they may cut off"
     return Measure(value, error, method, symmetric.evaluations + count * DRAWINGS), cells
 
 
-def _arcs(space: Space, free: Space, cells: Cells, count: int, seed: int, cores: int | None) -> Array:
-    """(DRAWINGS,) estimates of what is reached of the arcs that are not certain, from `count` points each."""
+def _arcs(space: Space, free: Space, cells: Cells, count: int, seed: int, cores: int | None) -> tuple[float, float]:
+    """What is reached of the arcs that are not certain, and its error's bound, from DRAWINGS times `count` points."""
     some = cells.fraction > 0.0
     low, high = cells.low[some], cells.high[some]
     if not len(low):
-        return np.zeros(DRAWINGS)
+        return 0.0, 0.0
     rng = np.random.default_rng((seed, 0xA2C5))
     points = [cells.region.points(points_in(cells.region, low, high, count, rng)[0]) for _ in range(DRAWINGS)]
     drawn = np.column_stack([np.concatenate(points), rng.random(count * DRAWINGS)])
@@ -171,7 +193,13 @@ def _arcs(space: Space, free: Space, cells: Cells, count: int, seed: int, cores:
     first = space.moving[0]
     remaining = 1.0 - float(space.high[first] - space.low[first]) / TURN
     whole = float(np.sum(cells.region.sizes(low, high)))
-    return np.asarray(whole * remaining * np.mean(hits.reshape(DRAWINGS, count), axis=1))
+    shares = np.mean(hits.reshape(DRAWINGS, count), axis=1)
+    off = STUDENT * float(np.std(shares, ddof=1)) / float(np.sqrt(DRAWINGS))
+    # Where few points say one thing and all others the other, drawings may agree by chance.
+    rare = int(min(np.sum(hits), np.sum(~hits)))
+    if rare < RARE:
+        off = max(off, (poisson_limit(rare, RISK) - rare) / len(hits))
+    return whole * remaining * float(np.mean(shares)), whole * remaining * off
 
 
 def _beyond(space: Space, free: Space, drawn: Array) -> Flags:

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robokin.workspace.closed_form import closed_form_of
-from robokin.workspace.descent import descent_of
+from robokin.workspace.descent import REACHED, descent_of
+from robokin.workspace.sampling import moving_chain
 from robokin.workspace.space import Space
 
 Array = NDArray[np.float64]
@@ -20,14 +21,39 @@ def reachable(space: Space, points: ArrayLike) -> Flags:
     """(m,) whether the tool's origin comes to each of the points (m, 3) [m], with some orientation, within limits.
 
     A point this side of 1e-7 of the arm's size from the set counts as its own. Where more joints move the origin
-    than the set has dimensions a point is sought for from several starts: the answer False is then not proven.
+    than the set has dimensions a point is sought for from many starts: the answer False is then not proven, unless
+    `decided` says so. What the closed forms of the others do not give is sought, too: next to a singular
+    configuration they may lose it.
     """
     p = np.asarray(points, dtype=np.float64).reshape(-1, 3)
-    if finitely_many(space):
-        return np.asarray(solution_count(space, p) > 0)
     if not space.moving:
         return np.asarray(np.linalg.norm(p - space.centre, axis=1) <= 1e-7 * space.size)
-    return descent_of(space).reachable(p)
+    if not finitely_many(space):
+        return descent_of(space).reachable(p)
+    there = np.asarray(solution_count(space, p) > 0)
+    there[~there] = descent_of(space).reachable(p[~there])
+    return there
+
+
+def decided(space: Space) -> bool:
+    """Whether `reachable` says no only of what cannot be reached, but for points that fill nothing."""
+    return not space.moving or finitely_many(space) or descent_of(space).exact is not None
+
+
+def proven_out(space: Space, points: ArrayLike) -> Flags:
+    """(m,) of points (m, 3) [m] that are not reached whether that is proven: by closed forms, or since they lie out of
+    the set's plane or farther away than the arm is long."""
+    p = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+    if decided(space):
+        return np.ones(len(p), dtype=bool)
+    chain, moving = moving_chain(space), list(space.moving)
+    ways = np.maximum(np.abs(space.low[moving] + chain.offsets), np.abs(space.high[moving] + chain.offsets))
+    length = float(np.sum(np.linalg.norm(chain.constants[1:, :3, 3], axis=1)) + np.sum(ways[~chain.revolute]))
+    out = np.linalg.norm(p - chain.constants[0, :3, 3], axis=1) > (1.0 + REACHED) * length
+    if space.basis is not None:
+        off = p - space.centre
+        out |= np.linalg.norm(off - off @ space.basis @ space.basis.T, axis=1) > REACHED * space.size
+    return np.asarray(out)
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robokin.errors import InputError
-from robokin.inverse.analysis import analysis_of
+from robokin.inverse.analysis import Task, analysis_of
 from robokin.inverse.solve import solve_many
 from robokin.kinematics.forward import forward_kinematics
 from robokin.spatial import rotation_from_axis_angle, transform
@@ -31,12 +31,13 @@ from robokin.workspace.attitudes import ALIKE, Attitudes, Group, attitudes, grou
 from robokin.workspace.cells import RISK, checked, split_cells
 from robokin.workspace.critical import Every, worst_beyond
 from robokin.workspace.measure import several_measure
-from robokin.workspace.membership import finitely_many, reachable, solution_count
+from robokin.workspace.membership import finitely_many, proven_out, reachable, solution_count
 from robokin.workspace.parallel import in_order
 from robokin.workspace.region import Region, region_of
 from robokin.workspace.result import Dexterity, Extent, Measure
 from robokin.workspace.space import Space
-from robokin.workspace.trials import fractions, reached_with, table, telling_order
+from robokin.workspace.stages import stage
+from robokin.workspace.trials import at_one_place, fractions, reached_beside, reached_by_search, table, telling_order
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -65,6 +66,9 @@ TRIED: dict[Group, int] = {"SO(2)": 360, "S2": 1000, "SO(3)": 2000}
 HALVINGS = 40
 """Times that the end of a range of angles is halved: to rounding."""
 
+BEYOND_END = 1e-2, 1e-4, 1e-6
+"""Parts of what is left to the next angle of the grid that are looked at beyond the end of a range."""
+
 COARSE = 2
 """The map's grid, and the one that finds the boundary, have one orientation in so many."""
 
@@ -80,6 +84,9 @@ MAP_CELLS = 800
 
 MOST_CELLS = 1_000_000
 """Cells of the map at most: further ones would take hours."""
+
+SPARE = "orientations of an arm with joints to spare that are called impossible were not found by search (not proven)"
+"""What is to be known of maps and sets of orientations that more joints reach than are needed."""
 
 REDUNDANT = 48
 """An arm with joints to spare is solved for some fifty values of them: for so many times fewer queries."""
@@ -98,7 +105,9 @@ def dexterity(
 
     Raises InputError for a voxel that is larger than the set or makes more than MOST_CELLS cells.
     """
-    group = group_of(space) if space.dimension else "finite"
+    if not space.dimension:
+        return _of_a_point(space, reach, samples, seed)
+    group = group_of(space)
     if group in ("finite", "curve") or space.basis is None:
         several = _few(space, reach, samples, seed, cores) if group == "finite" else _almost_all(reach)
         none = Measure(0.0, 0.0, "too few orientations at every place for all of them", 0)
@@ -110,6 +119,7 @@ def dexterity(
     fine, coarse = attitudes(space, group, count, seed), attitudes(space, group, count // COARSE, seed)
     region = region_of(space, extent)
     low, high, side = _map_cells(region, voxel)
+    stage("map of the orientations")
     middle = region.points(0.5 * (low + high))
     fraction = fractions(space, coarse, middle, cores)
     there = fraction > 0.0
@@ -134,6 +144,17 @@ def dexterity(
         all_of_them,
         len(coarse.rotations),
     )
+
+
+def _of_a_point(space: Space, reach: Measure, samples: int, seed: int) -> Dexterity:
+    """The orientations at the only place that the tool's origin comes to."""
+    group = group_of(space)
+    count = max(int(ORIENTATIONS.get(group, 0) * np.sqrt(samples / USUAL)), 16 * COARSE)
+    place = at_point(space, space.centre, count, seed)
+    part = place.fraction if place.tried else 0.0
+    tried = attitudes(space, group, count, seed).spacing if place.tried else 0.0
+    points, fraction = space.centre[None], np.array([part])
+    return Dexterity(group, place.tried, tried, points, 0.0, fraction, False, part, reach, reach, reach, place.tried)
 
 
 def _few(space: Space, reach: Measure, samples: int, seed: int, cores: int | None) -> Measure:
@@ -183,6 +204,7 @@ def _every_measure(
     altogether, plan: scale, seed, cores."""
     scale, seed, cores = plan
     fine, coarse = grids
+    stage("orientations that fail first")
     # The map's places that are nearest to having all say which orientations fail first.
     near = np.argsort(-fraction, kind="stable")[np.sum(fraction == 1.0) // 2 :][:100]
     blocks = [points[part] for part in np.array_split(near, 16) if len(part)]
@@ -194,9 +216,11 @@ def _every_measure(
     proof, oracle = oracles
     d = len(region.low)
     budget = max(int(PLACES[d] * scale), 256)
+    stage("set with every orientation, search 1 of 3")
     cells = split_cells(oracle, region, budget, budget, seed, cores)
     change, spent = [], 0
-    for radius in ABOUT:
+    for search, radius in enumerate(ABOUT, start=2):
+        stage(f"set with every orientation, search {search} of {1 + len(ABOUT)}")
         beyond = region.points(cells.beyond)
         most = max(int(WORST[d] * min(scale**2, 1.0)), 16)
         worst = worst_beyond(oracle, beyond, radius * coarse.spacing, most, cores)
@@ -208,6 +232,7 @@ def _every_measure(
     # With more samples this part of the bound shrinks faster than the others, of which it is the greatest.
     more = max(scale, scale**1.5)
     tests = int(min(-log(RISK) * whole / (CERTAIN / more * guess), MOST_TESTS * more))
+    stage("its test with a finer grid")
     test = checked(proof, cells, tests, seed, cores)
     measure = test.measure
     # What the finer grid alone takes off is as much as a yet finer one might.
@@ -229,7 +254,8 @@ class Place:
     solutions: the number of configurations, None where there are infinitely many. Of turns about one axis, unless all
     or none can be reached: ranges (k, 2, 3, 3), the first and the last rotation of each range that can, to rounding,
     in the direction of a positive turn about that coordinate axis of the world that is most along it; fraction: the
-    part of all that the ranges are, else of those tried."""
+    part of all that the ranges are, else of those tried. proven: whether a place that is not reachable is proven not to
+    be, True where it is."""
 
     point: Array
     reachable: bool
@@ -239,25 +265,41 @@ class Place:
     solutions: int | None
     ranges: Array = field(default_factory=lambda: np.zeros((0, 2, 3, 3)))
     fraction: float = float("nan")
+    proven: bool = True
 
 
 def at_point(space: Space, point: ArrayLike, orientations: int | None = None, seed: int = 0) -> Place:
     """Whether point (3,) [m] can be reached, with which of some orientations, and with how many configurations."""
+    place = _at_point(space, point, orientations, seed)
+    return place if place.reachable else replace(place, proven=bool(proven_out(space, place.point)[0]))
+
+
+def _at_point(space: Space, point: ArrayLike, orientations: int | None, seed: int) -> Place:
     p = np.asarray(point, dtype=np.float64)
     if p.shape != (3,) or not np.all(np.isfinite(p)):
         raise InputError("a place must be three finite numbers")
-    group = group_of(space) if space.dimension else "finite"
-    count = int(solution_count(space, p[None])[0]) if len(space.moving) == space.dimension else None
-    some = count > 0 if count is not None else bool(reachable(space, p[None])[0])
+    group = group_of(space)
+    count = int(solution_count(space, p[None])[0]) if finitely_many(space) else None
+    some = bool(reachable(space, p[None])[0])
+    count = max(count, 1) if some and count is not None else count
     if group in ("finite", "curve"):
-        found = solve_many(space.arm, transform(np.eye(3), p)[None], task="position")[0] if some else None
-        turned = [forward_kinematics(space.arm, s.q)[:3, :3] for s in found.solutions] if found else []
+        turned = _turned_ways(space, p) if some else []
+        if not some or not space.arm.n:
+            count = int(some)
         return Place(p, some, group, 0, _different(turned), count if group == "finite" or not some else None)
     grid = attitudes(space, group, orientations or TRIED[group], seed)
-    flags = table(space, grid, p[None])[0] if some else np.zeros(len(grid.rotations), dtype=bool)
+    flags = at_one_place(space, grid, p) if some else np.zeros(len(grid.rotations), dtype=bool)
     part = float(np.mean(flags))
     place = Place(p, some, group, len(flags), grid.rotations[flags], None if some else 0, fraction=part)
     return _with_ranges(space, grid, flags, place) if group == "SO(2)" and 0.0 < part < 1.0 else place
+
+
+def _turned_ways(space: Space, p: Array) -> list[Array]:
+    """Rotations (3, 3) of the tool that inverse kinematics finds for a place (3,) [m]."""
+    if not space.arm.n:
+        return [forward_kinematics(space.robot, 0.5 * (space.low + space.high))[:3, :3]]
+    found = solve_many(space.arm, transform(np.eye(3), p)[None], task="position")[0]
+    return [forward_kinematics(space.arm, s.q)[:3, :3] for s in found.solutions]
 
 
 def _with_ranges(space: Space, grid: Attitudes, flags: Flags, place: Place) -> Place:
@@ -270,12 +312,7 @@ def _with_ranges(space: Space, grid: Attitudes, flags: Flags, place: Place) -> P
     first = np.flatnonzero(flags & ~np.roll(flags, 1))
     start = grid.rotations[np.concatenate([first, last])]
     toward = np.concatenate([np.full(len(first), -step), np.full(len(last), step)])
-    low, high = np.zeros(len(start)), np.ones(len(start))
-    points = np.tile(place.point, (len(start), 1))
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        there = reached_with(space, grid.task, points, rotation_from_axis_angle(axis, middle * toward) @ start)
-        low, high = np.where(there, middle, low), np.where(there, high, middle)
+    low = _ends(space, grid.task, place.point, start, axis, toward)
     ends = rotation_from_axis_angle(axis, low * toward) @ start
     beyond = low * grid.spacing
     # The range that begins with first[i] ends with the next of last, around the circle.
@@ -284,6 +321,31 @@ def _with_ranges(space: Space, grid: Attitudes, flags: Flags, place: Place) -> P
     spans = count * grid.spacing + beyond[: len(first)] + beyond[len(first) :][after]
     pairs = np.stack([ends[: len(first)], ends[len(first) :][after]], axis=1)
     return replace(place, ranges=pairs if step > 0.0 else pairs[:, ::-1], fraction=float(np.sum(spans)) / (2.0 * np.pi))
+
+
+def _ends(space: Space, task: Task, point: Array, start: Array, axis: Array, toward: Array) -> Array:
+    """(k,) the part of the way `toward` (k,) [rad] about an axis from rotations `start` (k, 3, 3) that can be reached
+    at a point (3,) [m]; the whole of it cannot."""
+    points = np.tile(point, (len(start), 1))
+
+    def turned(part: Array) -> Array:
+        return np.asarray(rotation_from_axis_angle(axis, part * toward) @ start)
+
+    low, (_, q) = np.zeros(len(start)), reached_by_search(space, task, points, start)
+    for beyond in BEYOND_END:
+        high = np.ones(len(start))
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            there, found = reached_beside(space, task, points, turned(middle), q)
+            low, high = np.where(there, middle, low), np.where(there, high, middle)
+            q = np.where(there[:, None], found, q)
+        # It may go on with a spare joint elsewhere.
+        further = low + beyond * (1.0 - low)
+        there, found = reached_by_search(space, task, points, turned(further))
+        if not there.any():
+            break
+        low, q = np.where(there, further, low), np.where(there[:, None], found, q)
+    return low
 
 
 def _different(rotations: list[Array]) -> Array:

@@ -13,11 +13,12 @@ import signal
 import sys
 import warnings
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sized
 from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robokin.errors import InputError, RobokinError
+from robokin.workspace.stages import counted
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -54,11 +55,12 @@ def in_order(function: Callable[[Task], Result], tasks: Iterable[Task], cores: i
     """
     if cores is not None and cores < 1:
         raise InputError(f"found {cores} cores, expected at least 1")
+    total = len(tasks) if isinstance(tasks, Sized) else None
     waiting = iter(tasks)
     first = list(islice(waiting, cores or usable_cores()))
     if len(first) < 2 or _is_worker():
-        return map(function, _chained(first, waiting))
-    return (_forked if _can_fork() else _threaded)(function, _chained(first, waiting), len(first))
+        return counted(map(function, _chained(first, waiting)), total)
+    return counted((_forked if _can_fork() else _threaded)(function, _chained(first, waiting), len(first)), total)
 
 
 def _chained(first: list[Task], rest: Iterator[Task]) -> Iterator[Task]:

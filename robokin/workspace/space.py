@@ -83,6 +83,8 @@ def space_of(robot: Robot) -> Space:
     low, high, full = joint_box(robot)
     chain = chain_of(robot)
     size = chain_size(chain) + float(np.sum(np.where(robot.revolute, 0.0, np.abs(low) + np.abs(high))))
+    # An arm without any length: what is small is judged by its unit.
+    size = size or robot.units.metres
     # Values of no meaning: whatever holds at all of them holds everywhere.
     q = low + (high - low) * np.random.default_rng(11).random((PROBES, robot.n))
     F = joint_frames_of(chain, q)

@@ -19,8 +19,8 @@ Index = NDArray[np.intp]
 KEPT = 1 << 15
 """Sampled configurations."""
 
-SIDE = 48
-"""Cells along the longer side of the table: some ten samples in each."""
+EACH = 14
+"""Samples in a cell of the table's square, of which a set fills a part."""
 
 BEYOND = 0.15
 """Part of its range by which a joint's sample may pass each limit, to be put back to it: much of a set's boundary
@@ -37,15 +37,17 @@ TURN = 2.0 * np.pi
 
 
 class Starts:
-    """A table of configurations, sampled ones and `more` (n, k), by cells of what the first joint leaves alone."""
+    """A table of configurations, `kept` sampled ones and `more` (n, k), by cells of what the first joint leaves alone.
 
-    def __init__(
-        self, placing: Placing, low: Array, high: Array, full: NDArray[np.bool_], size: float, more: Array
-    ) -> None:
+    low, high: (n,) the box [rad | m] that is sampled: of a face of the joint box one of them has one value.
+    """
+
+    def __init__(self, placing: Placing, low: Array, high: Array, more: Array | None = None, kept: int = KEPT) -> None:
         self.turns = bool(placing.revolute[0])
-        self.low, self.high, self.full, self.size = low, high, full, size
+        self.low, self.high = low, high
         n = len(low)
-        u = unit_points("sobol", n, 0, 0, KEPT, KEPT)
+        more = np.zeros((n, 0)) if more is None else more
+        u = unit_points("sobol", n, 0, 0, kept, kept) if kept else np.zeros((n, 0))
         # Every other sample may come to lie on limits.
         u[:, ::2] = np.clip((1.0 + 2.0 * BEYOND) * u[:, ::2] - BEYOND, 0.0, 1.0)
         q = low[:, None] + (high - low)[:, None] * u
@@ -59,7 +61,7 @@ class Starts:
         self.q, self.seen = q, seen
         self.corner = seen.min(axis=1)
         spread = float(np.max(seen.max(axis=1) - self.corner)) or 1.0
-        self.step = spread / SIDE * (1.0 + 1e-9)
+        self.step = spread / np.sqrt((kept or more.shape[1]) / EACH) * (1.0 + 1e-9)
         self.shape = np.maximum(np.ceil((seen.max(axis=1) - self.corner) / self.step), 1).astype(np.intp)
         cells = self._cell(seen)
         self.order = np.argsort(cells, kind="stable")

@@ -77,8 +77,9 @@ def test_the_answer_is_the_same_bytes_on_one_core_and_on_two(call):
     two = call("workspace", "stanford", *FEW, "--cores", "2", "--json")
     assert one.status == 0
     assert one.out == two.out
-    other = call("workspace", "stanford", *FEW, "--seed", "7", "--json")
-    assert other.json["volume"] != one.json["volume"]
+    # The size of a set that three joints reach is an estimate.
+    volumes = [call("workspace", "gp8", *FEW, "--seed", seed, "--json").json["volume"] for seed in (0, 7)]
+    assert volumes[0] != volumes[1]
 
 
 def test_the_formats_say_the_same(call):

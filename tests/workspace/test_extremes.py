@@ -12,7 +12,7 @@ from robokin.errors import InputError
 from robokin.kinematics.forward import forward_kinematics
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_transform, translation_transform
-from robokin.workspace.extremes import _derivatives, _Goals, _scaled, extent
+from robokin.workspace.extremes import _derivatives, _Goals, _polish, _scaled, _sweep, extent
 from robokin.workspace.sampling import sample_blocks
 from robokin.workspace.space import space_of
 
@@ -228,3 +228,59 @@ def test_gradients_and_hessians_are_finite_differences(name, rng):
         slope = (goals.values(ahead[0]) - goals.values(behind[0])) / (2 * step)
         assert np.allclose(gradient[:, i], slope, rtol=0, atol=1e-8)
         assert np.allclose(H[:, i], (ahead[1] - behind[1]) / (2 * step), rtol=0, atol=1e-8)
+
+
+def test_a_corner_of_the_joint_limits_is_not_missed():
+    robot = Robot(
+        "corner",
+        (
+            slide("1", (0.0, 1.08), alpha=-np.pi / 2),
+            revolute("2", (-4.26, 0.229), a=0.243),
+            revolute("3", (-4.387, -1.172), a=0.654),
+        ),
+    )
+    # At both upper limits: 0.243 cos 0.229 + 0.654 cos(0.229 - 1.172).
+    corner = 0.243 * np.cos(0.229) + 0.654 * np.cos(0.229 - 1.172)
+    for seed in range(3):
+        assert extent(space_of(robot), seed).high[0] == pytest.approx(corner, abs=EXACT)
+
+
+def any_arm(number):
+    """Two to six joints with any limits, many of their lengths and angles round."""
+    rng = np.random.default_rng([31, number])
+    scale, rows = 10.0 ** rng.integers(-3, 4), []
+    for i in range(rng.integers(2, 7)):
+        cells = {"a": scale * rng.choice([0.0, rng.uniform(0.05, 1.0)])}
+        cells["alpha"] = rng.choice([0.0, np.pi / 2, -np.pi / 2, rng.uniform(-3, 3)])
+        low = rng.uniform(-4.0, 2.0)
+        if rng.random() < 0.25:
+            limits = (scale * low, scale * (low + rng.uniform(0.02, 1.5)))
+            rows.append(slide(str(i), limits, theta=rng.uniform(-3, 3), **cells))
+        else:
+            rows.append(
+                revolute(str(i), (low, low + rng.uniform(0.05, 6.5)), d=scale * rng.uniform(-0.5, 0.5), **cells)
+            )
+    return Robot("any", tuple(rows), tool=translation_transform(scale * rng.uniform(-0.5, 0.5, 3)))
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_a_dense_search_finds_nothing_beyond(number):
+    """Coordinate descent and Newton's method from 300 configurations, many of them at limits, for each question."""
+    space = space_of(any_arm(number))
+    box, moving, each = _scaled(space), list(space.moving), 300
+    rng = np.random.default_rng(number)
+    part = rng.choice([0.0, 1.0, -1.0, -1.0], (8 * each, len(moving)))
+    q = box.low + (box.high - box.low) * np.where(part < 0.0, rng.random(part.shape), part)
+    g = np.concatenate([np.eye(3), -np.eye(3), np.zeros((2, 3))])
+    w, origin = np.array([0.0] * 6 + [1.0, -1.0]), space.robot.base[:3, 3] / space.size
+    goals = _Goals(np.repeat(g, each, axis=0), np.repeat(w, each), origin)
+    for _ in range(12):
+        f = _sweep(box, goals, q)
+    order = np.argsort(f.reshape(8, each), axis=1)[:, :24]
+    chosen = (order + each * np.arange(8)[:, None]).ravel()
+    f = _polish(box, goals.taken(chosen), q[chosen]).reshape(8, 24).min(axis=1)
+    found = extent(space)
+    assert np.all(found.low / space.size <= f[:3] + EXACT)
+    assert np.all(-found.high / space.size <= f[3:6] + EXACT)
+    assert found.least / space.size <= np.sqrt(2.0 * max(f[6], 0.0)) + EXACT
+    assert -found.greatest / space.size <= -np.sqrt(-2.0 * f[7]) + EXACT

@@ -150,7 +150,11 @@ def command(
     from robokin.cli.workspace_report import report
 
     robots = [model] if compare is None else [model, load_robot(compare, {})]
-    for data in report(robots, units, kind, (section, slice_ or []), plot, arguments):
+    from robokin.cli.progress import Stages
+
+    with Stages():
+        answer = list(report(robots, units, kind, (section, slice_ or []), plot, arguments))
+    for data in answer:
         _print(data)
     return DONE
 
@@ -173,13 +177,19 @@ def _places(robot: Robot, units: Units, kind: str, at: list[str], arguments: dic
 
     from robokin.cli.arguments import parse_numbers
     from robokin.cli.output.text import csv_records, json_document, json_line, json_list
+    from robokin.cli.progress import Stages
     from robokin.cli.workspaces import place_record
     from robokin.workspace.orientation import at_point
     from robokin.workspace.space import space_of
+    from robokin.workspace.stages import stage
 
     points = [parse_numbers(text, "--at", [False] * 3, units, "x, y and z") * units.metres for text in at]
     space = space_of(robot)
-    places = [at_point(space, np.asarray(point), seed=arguments["seed"]) for point in points]
+    places = []
+    with Stages():
+        for number, point in enumerate(points, start=1):
+            stage(f"place {number} of {len(points)}")
+            places.append(at_point(space, np.asarray(point), seed=arguments["seed"]))
     if kind == "table":
         from robokin.cli.workspace_tables import places_table
 
