@@ -10,7 +10,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
 # The environment has to be set first.
-from benchmarks import forward, inverse, machine, mobility, names, nearest, pipes, start, workspace  # noqa: E402
+from benchmarks import forward, inverse, machine, mobility, names, nearest, pipes, redundant, start, workspace  # noqa: E402
 
 BENCHMARKS = {
     "forward": forward.run,
@@ -18,6 +18,7 @@ BENCHMARKS = {
     "inverse": inverse.run,
     "names": names.run,
     "nearest": nearest.run,
+    "redundant": redundant.counted,
     "workspace": workspace.run,
     "mobility": mobility.run,
     "start": start.run,

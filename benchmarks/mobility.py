@@ -18,8 +18,9 @@ from robokin.model import Mechanism, MechanismJoint
 RUNS = 15
 SLOWEST = 3
 ROBOKIN = "from robokin.cli import main; main()"
-LIBRARY_LIMIT, CHAIN_LIMIT, START_LIMIT = 1.0, 10.0, 1.0
-"""Seconds for any mechanism of the library and for 200 links; start of a bare count in starts of `robokin fk`."""
+LIBRARY_LIMIT, MEDIAN_LIMIT, CHAIN_LIMIT, START_LIMIT = 0.5, 0.01, 1.0, 1.0
+"""Seconds for any mechanism of the library, for the one in the middle, and for 200 links; start of a bare count in
+starts of `robokin fk`."""
 
 
 def chain(count: int) -> Mechanism:
@@ -36,18 +37,45 @@ def chain(count: int) -> Mechanism:
     return Mechanism("a chain", "planar", tuple(links), tuple(joints), "0")
 
 
+def legs(kind: str) -> Mechanism:
+    """Six equal legs between congruent hexagons, with universal or ball joints below: branches that are double."""
+    joints = []
+    freedoms = {"universal": 2, "spherical": 3}
+    for i in range(6):
+        foot = np.array([2.0 * np.cos(np.pi * i / 3.0), 2.0 * np.sin(np.pi * i / 3.0), 0.0])
+        axes = np.eye(3)[:2] if kind == "universal" else None
+        joints.append(MechanismJoint(f"foot {i}", kind, ("0", f"leg {i}"), freedoms[kind], foot, axes))
+        top = foot + np.array([0.0, 0.0, 2.0])
+        joints.append(MechanismJoint(f"top {i}", "spherical", (f"leg {i}", "platform"), 3, top))
+    return Mechanism("legs", "spatial", ("0", "platform", *(f"leg {i}" for i in range(6))), tuple(joints), "0")
+
+
+def cranks(count: int) -> Mechanism:
+    """Equal cranks of a parallelogram at its change point: branches that meet."""
+    z, joints = np.array([[0.0, 0.0, 1.0]]), []
+    for i in range(count):
+        joints.append(MechanismJoint(f"A{i}", "revolute", ("0", f"c{i}"), 1, np.array([2.0 * i, 0.0, 0.0]), z))
+        joints.append(MechanismJoint(f"B{i}", "revolute", (f"c{i}", "b"), 1, np.array([2.0 * i + 1.0, 0.0, 0.0]), z))
+    return Mechanism("cranks", "planar", ("0", "b", *(f"c{i}" for i in range(count))), tuple(joints), "0")
+
+
 def run() -> None:
     print("mobility, from Python, ms")
     entries = [load_any(name) for name in library_names()]
     mechanisms = [entry for entry in entries if isinstance(entry, Mechanism)]
     times = {m.id: best_of(lambda m=m: mobility_of(m), 3) for m in mechanisms}
     slowest = sorted(times, key=times.__getitem__, reverse=True)[:SLOWEST]
-    line(f"{len(times)} mechanisms of the library, median", f"{statistics.median(times.values()) * 1e3:.1f}")
+    median = statistics.median(times.values())
+    line(f"{len(times)} mechanisms of the library, median", f"{median * 1e3:.1f}", f"limit {MEDIAN_LIMIT * 1e3:.0f}")
     for name in slowest:
         line(f"among the slowest: {name}", f"{times[name] * 1e3:.0f}", f"limit {LIBRARY_LIMIT * 1e3:.0f}")
     long = chain(67)
     taken = best_of(lambda: mobility_of(long), 3)
     line(f"a planar chain of {len(long.links)} links", f"{taken * 1e3:.0f}", f"limit {CHAIN_LIMIT * 1e3:.0f}")
+    special = {"three cranks in a line": cranks(3), "a hexapod of equal legs, U-S": legs("universal"),
+               "a hexapod of equal legs, S-S": legs("spherical")}  # fmt: skip
+    for name, mechanism in special.items():
+        line(name, f"{best_of(lambda m=mechanism: mobility_of(m), 2) * 1e3:.0f}")
     four = load_any("four-bar")
     assert isinstance(four, Mechanism)
     line("360 configurations of a four-bar", f"{best_of(lambda: trace(four, 360), 3) * 1e3:.0f}")

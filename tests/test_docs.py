@@ -85,6 +85,7 @@ def test_descriptions_in_the_text_can_be_read(page):
         "MECHANISM",
         "EXPECTED",
         "MECHANISM_JOINT",
+        "LINK",
         "WHEELED",
         "WHEEL",
         "BASE_EXPECTED",

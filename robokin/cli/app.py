@@ -25,7 +25,7 @@ COMMANDS = {
     "jacobian": "The Jacobian: how freely the tool moves at a configuration.",
     "singular": "Where an arm loses a freedom: shoulder, elbow, wrist.",
     "path": "From here to there, joint by joint or along a straight line.",
-    "plot": "A picture of an arm, still or turning with the mouse.",
+    "plot": "A picture of an arm or a mechanism, still or turning.",
     "workspace": "What an arm can reach, and how freely the tool can turn.",
     "dof": "How freely can it move? Grübler's count, and the truth.",
     "check": "Mark answers: poses, joint values, tables, counts.",

@@ -25,6 +25,16 @@ def load_robot(name: str, overrides: dict[str, str]) -> Robot:
     return loaded
 
 
+def way_of(text: str | None) -> int | None:
+    """The number of --mode: which way to put a mechanism together. Raises InputError."""
+    if text is None:
+        return None
+    digits = text.strip()
+    if not (digits.isascii() and digits.isdecimal() and len(digits) < 10) or not int(digits):
+        raise InputError(f"--mode: found '{shown(text)}', expected a whole number from 1")
+    return int(digits)
+
+
 def split_vector(text: str) -> list[str]:
     """The parts of a vector in one argument: separated by commas if there is one, else by spaces.
 

@@ -16,10 +16,10 @@ LETTERS = {
     "R": ("revolute", 1), "P": ("prismatic", 1), "H": ("helical", 1), "C": ("cylindrical", 2), "U": ("universal", 2),
     "S": ("spherical", 3), "E": ("planar", 3), "F": ("fixed", 0), "G": ("contact", 5),
 }  # fmt: skip
-"""Joints by their letters, with their freedoms f in space; G is any contact, such as of gears or a cam."""
+"""Joints by their letters, with their freedoms f in space; G is any contact, such as of gears or a cam, or a belt."""
 
-PLANE_CONTACT = 2
-"""Freedoms of a contact in the plane."""
+FLAT_CONTACT = 2
+"""Freedoms of a contact in the plane and on the sphere: it takes one of the three, as it takes one of six in space."""
 
 OUT_OF_SPACE = {"planar": "HCUS", "spherical": "PHCE", "spatial": ""}
 """Joints that do not exist in a space: they would lead out of it."""
@@ -27,7 +27,7 @@ OUT_OF_SPACE = {"planar": "HCUS", "spherical": "PHCE", "spatial": ""}
 OTHER_WORDS = {
     "pin": "R", "hinge": "R", "rotary": "R", "turning": "R", "T": "P", "slider": "P", "sliding": "P", "linear": "P",
     "screw": "H", "hooke": "U", "cardan": "U", "B": "S", "ball": "S", "weld": "F", "rigid": "F", "gear": "G",
-    "cam": "G", "rolling": "R", "point": "G",
+    "cam": "G", "rolling": "R", "point": "G", "belt": "G", "chain": "G", "bevel": "G", "worm": "G", "contact": "G",
 }  # fmt: skip
 """What other books call the joints."""
 
@@ -115,7 +115,7 @@ def bare_record(links: int, counts: dict[str, int], space: str) -> dict[str, Any
 
 
 def _freedoms(letter: str, space: str) -> int:
-    return PLANE_CONTACT if letter == "G" and space == "planar" else LETTERS[letter][1]
+    return FLAT_CONTACT if letter == "G" and space != "spatial" else LETTERS[letter][1]
 
 
 def type_record(name: str, letter: str, count: int, f: int, order: int) -> dict[str, Any]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robokin.cli.bare_counts import LETTERS, count_record, type_record
-from robokin.mobility.reasons import nearly_more
 from robokin.model import Mechanism, Robot, WheeledBase
 from robokin.units import Units
 
@@ -20,6 +19,7 @@ NAMES = {name: letter for letter, (name, _) in LETTERS.items()}
 def mechanism_record(found: Mobility, units: Units, seed: int) -> dict[str, Any]:
     """Count and truth of a mechanism."""
     from robokin.mobility.assembly import parts_of
+    from robokin.mobility.ground import ground_doubt
     from robokin.mobility.slips import slips_of
 
     mechanism, motion = found.mechanism, found.motion
@@ -42,7 +42,7 @@ def mechanism_record(found: Mobility, units: Units, seed: int) -> dict[str, Any]
         "loops": record["joints"] - record["links"] + len(parts_of(mechanism)),
         "instantaneous": None if motion is None else motion.instantaneous,
         "generic": None if motion is None else motion.generic,
-        "if_exact": motion.instantaneous + nearly_more(motion) if motion and found.verdict == "nearly" else None,
+        "if_exact": motion.instantaneous + found.nearly if motion and found.verdict == "nearly" else None,
         "singular_values": None if motion is None else motion.values.tolist(),
         "gap": None if motion is None else list(motion.gap),
         "strained": list(found.strained),
@@ -54,9 +54,49 @@ def mechanism_record(found: Mobility, units: Units, seed: int) -> dict[str, Any]
         "missing": list(found.missing),
         "slips": list(slips_of(mechanism)),
         "seed": seed,
+        "decided": None if motion is None else motion.undecided is None,
+        "undecided": None if motion is None else motion.undecided,
+        "mobility_bounds": None if motion is None else [motion.finite, motion.most],
+        "order": None if motion is None else motion.order,
+        "branches": _branch_records(found),
+        "branch_count": None if motion is None else motion.count,
+        "velocities_only": list(found.wandering),
+        "mode": mechanism.mode or None,
+        "modes": _modes(mechanism, units),
+        "modes_complete": mechanism.modes_complete if mechanism.modes else None,
+        "ground": mechanism.ground,
+        "ground_named": mechanism.ground_named,
+        "ground_note": ground_doubt(mechanism),
     }
     record |= _compared(dict(mechanism.expected), record)
     return record
+
+
+def _modes(mechanism: Mechanism, units: Units) -> list[dict[str, Any]] | None:
+    """The ways to put the mechanism together, in the units; None where its joints have their places."""
+    if not mechanism.modes:
+        return None
+    return [
+        {
+            "mode": number,
+            "double": mode.double,
+            "joints": {
+                name: [place.real / units.metres + 0.0, place.imag / units.metres + 0.0]
+                for name, place in mode.places.items()
+            },
+            "links": {name: angle / units.radians + 0.0 for name, angle in mode.angles.items()},
+        }
+        for number, mode in enumerate(mechanism.modes, start=1)
+    ]
+
+
+def _branch_records(found: Mobility) -> list[dict[str, Any]]:
+    """Each branch of configurations through the pose."""
+    outputs = found.outputs or (found.output,) * len(found.branches)
+    return [
+        {"dimension": size, "joints": list(names), "output": _output_record(output)}
+        for (size, names), output in zip(found.branches, outputs, strict=True)
+    ]
 
 
 def _types(mechanism: Mechanism) -> list[dict[str, Any]]:
@@ -116,7 +156,8 @@ def robot_record(robot: Robot, units: Units) -> dict[str, Any]:
 
 
 def wheeled_record(base: WheeledBase, found: Manoeuvrability, units: Units) -> dict[str, Any]:
-    """A base's degrees of mobility, steerability and manoeuvrability; the first is what counts as controllable."""
+    """A base's degrees of mobility, steerability and manoeuvrability, and what its motors command of the first two."""
+    commands = found.commands
     record = {
         "name": base.name,
         "space": "planar",
@@ -126,7 +167,7 @@ def wheeled_record(base: WheeledBase, found: Manoeuvrability, units: Units) -> d
         "mobility_basis": "geometry",
         "overconstraints": None,
         "idle": None,
-        "controllable": found.mobility,
+        "controllable": found.controllable,
         "holonomic": found.holonomic,
         "note": found.note,
         "kind": "wheeled",
@@ -138,6 +179,14 @@ def wheeled_record(base: WheeledBase, found: Manoeuvrability, units: Units) -> d
         "total": found.total,
         "ratio": found.ratio,
         "reachable": found.reachable,
-        "compared": "mobility",
+        "compared": "controllable" if found.uncontrolled else "mobility",
+        "uncontrolled": found.uncontrolled,
+        "controllable_in_line": commands.least,
+        "commanded_steering": commands.steering,
+        "commanded_speeds": commands.speeds,
+        "conditions": commands.conditions,
+        "driven": [wheel.name for wheel in base.wheels if wheel.driven],
+        "turned": [wheel.name for wheel in base.wheels if wheel.turned],
+        "drive_note": commands.note,
     }
     return record | _compared(dict(base.expected), record)

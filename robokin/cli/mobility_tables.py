@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from robokin.cli.output.numbers import counted
 from robokin.cli.output.tables import heading, pairs, render, table
+
+MODE_COLUMNS = 3
+"""Joints whose places are listed for each way to put a mechanism together; the document has all of them."""
 
 VERDICTS = {
     "right": "the count is right",
@@ -13,10 +17,15 @@ VERDICTS = {
     "singular": "singular pose: it can do more here than elsewhere",
     "shaky": "shaky: some of its motions are only a tremble",
     "nearly": "nearly mobile: the dimensions are not exact",
+    "undecided": "undecided: what is known does not settle it",
     "disconnected": "disconnected: there is no one mechanism to count",
     "counted": "counted only: without geometry nobody knows",
 }
 """Verdicts in words."""
+
+
+BRANCHES = 6
+"""Branches that a table lists."""
 
 
 def mobility_table(record: dict[str, Any]) -> bytes:
@@ -26,6 +35,10 @@ def mobility_table(record: dict[str, Any]) -> bytes:
     parts += [pairs(_count(record))]
     if record["kind"] == "mechanism":
         parts += ["", _side_by_side(record), "", pairs(_mechanism_entries(record))]
+        if record["modes"]:
+            parts += ["", _modes(record)]
+            if not record["modes_complete"]:
+                parts += ["found by search: there may be more ways to put it together"]
     elif record["kind"] == "robot":
         parts += ["", pairs(_robot_entries(record))]
     elif record["note"]:
@@ -67,12 +80,15 @@ def _side_by_side(record: dict[str, Any]) -> Any:
         drawn.add_column(name, justify="right", no_wrap=True)
     drawn.add_column("verdict", overflow="fold")
     truth = "?" if record["mobility"] is None else str(record["mobility"])
-    drawn.add_row(str(record["grubler"]), truth, VERDICTS[record["verdict"]])
+    verdict = VERDICTS[record["verdict"]]
+    if record["verdict"] == "singular" and (record["branch_count"] or 1) > 1:
+        verdict = f"singular pose, where {record['branch_count']} branches meet: it can do more here than elsewhere"
+    drawn.add_row(str(record["grubler"]), truth, verdict)
     return drawn
 
 
 def _mechanism_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
-    entries = [("why", _why(record))]
+    entries = [("why", _why(record)), ("ground", _ground(record))]
     if record["mobility"] is not None:
         if record["overconstraints"]:
             of = counted(record["lambda"] * record["loops"], "constraint")
@@ -83,6 +99,11 @@ def _mechanism_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
             entries.append(("idle", f"{_freedoms(record['idle'])} that {do} not move {what}"))
         if record["dead_joints"]:
             entries.append(("dead", f"{_joints_named(record['dead_joints'])}, held by the others"))
+        entries += _branch_entries(record)
+        if record["order"] is not None:
+            entries.append(
+                ("order", f"{record['order']}: with this power of a step the constraints forbid the tremble")
+            )
         entries += _output_entries(record) + _drive_entries(record)
         entries += _numbers_entries(record)
     entries += [("look at", sentence) for sentence in record["slips"]]
@@ -92,6 +113,41 @@ def _mechanism_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
     return entries
 
 
+def _modes(record: dict[str, Any]) -> Any:
+    """The ways to put it together: where the joints are that are elsewhere in some."""
+    modes = record["modes"]
+    size = max(math.hypot(*place) for mode in modes for place in mode["joints"].values())
+    names = [
+        name for name, place in modes[0]["joints"].items()
+        if any(math.dist(place, mode["joints"][name]) > 1e-9 * size for mode in modes[1:])
+    ]  # fmt: skip
+    names = (names or list(modes[0]["joints"]))[:MODE_COLUMNS]
+    drawn = table()
+    drawn.add_column("mode", justify="right")
+    for name in names:
+        drawn.add_column(f"{name} [{record['units']['length']}]", justify="right", overflow="fold")
+    drawn.add_column("")
+    for mode in modes:
+        places = ["  ".join(f"{value:.6g}" for value in _rounded(mode["joints"][name])) for name in names]
+        said = [word for word, true in (("this one", mode["mode"] == record["mode"]),
+                                        ("double: a dead point", mode["double"])) if true]  # fmt: skip
+        drawn.add_row(str(mode["mode"]), *places, ", ".join(said))
+    return drawn
+
+
+def _rounded(place: list[float]) -> list[float]:
+    """A place whose rounding errors beside larger numbers are none."""
+    least = 1e-9 * max(map(abs, place))
+    return [0.0 if abs(value) <= least else value for value in place]
+
+
+def _ground(record: dict[str, Any]) -> str:
+    """Which link stands still and who says so."""
+    if record["ground_note"]:
+        return str(record["ground_note"])
+    return f"{record['ground']}, {'as the file says' if record['ground_named'] else 'the first link'}"
+
+
 def _why(record: dict[str, Any]) -> str:
     """The sentence; where nothing is special, that."""
     if record["note"]:
@@ -99,6 +155,24 @@ def _why(record: dict[str, Any]) -> str:
     if not record["loops"]:
         return "there is no loop, so nothing keeps a joint from moving"
     return "the constraints of the loops are independent, so each takes one freedom away, as the count has it"
+
+
+def _branch_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
+    """Each branch with its freedoms and what moves in it, where there are several."""
+    branches, count = record["branches"], record["branch_count"] or 1
+    if count < 2:
+        return []
+    entries = []
+    for branch in branches[:BRANCHES]:
+        names = branch["joints"]
+        listed = ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
+        moving = f"joint{'' if len(names) == 1 else 's'} {listed} move{'s' if len(names) == 1 else ''}"
+        output = branch["output"]
+        does = f"; {output['link']}: {output['kind'] if output['freedoms'] else 'stands still'}" if output else ""
+        entries.append(("branch", f"{_freedoms(branch['dimension'])}: {moving if names else 'nothing moves'}{does}"))
+    if count > BRANCHES:
+        entries.append(("", f"and {count - BRANCHES} more"))
+    return entries
 
 
 def _output_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
@@ -175,7 +249,8 @@ def wheeled_table(record: dict[str, Any]) -> bytes:
     drawn.add_row("manoeuvrability", f"δM = {mobility + steering}", "δm + δs")
     entries = [
         ("wheels", ", ".join(f"{count} {kind}" for kind, count in kinds.items())),
-        ("CDOF / TDOF", f"δm / 3 = {mobility}/3"),
+        ("controllable", _commanded(record)),
+        ("CDOF / TDOF", f"{record['controllable']}/3" if record["uncontrolled"] else f"δm / 3 = {mobility}/3"),
         ("so it is", _holonomy(record)),
     ]
     if record["note"]:
@@ -186,11 +261,32 @@ def wheeled_table(record: dict[str, Any]) -> bytes:
     return render(heading(record["name"], "a wheeled base in the plane"), "", drawn, "", pairs(entries))
 
 
+def _commanded(record: dict[str, Any]) -> str:
+    """What the motors command of both degrees."""
+    castors = {wheel["name"] for wheel in record["wheels"] if wheel["type"] == "castor"}
+    turned = [name for name in record["turned"] if name not in castors]
+    text = f"{record['controllable']} of δm = {record['mobility']} by {counted(len(record['driven']), 'driven wheel')}"
+    if swivels := castors.intersection(record["turned"]):
+        text += f" and {counted(len(swivels), 'turned castor')}"
+    if record["steerability"] or turned:
+        of = f"{record['commanded_steering']} of δs = {record['steerability']}"
+        text += f", {of} by {counted(len(turned), 'turned wheel')}"
+    return text + (f"; {record['drive_note']}" if record["drive_note"] else "")
+
+
 def _holonomy(record: dict[str, Any]) -> str:
     """Whether the base can at once move wherever it can get, by the ratio and by the constraints."""
     mobility, reachable, total = record["mobility"], record["reachable"], record["total"]
     if not mobility:
         return "no vehicle: it cannot move"
+    if not record["controllable"]:
+        return f"not driven: nothing is commanded; pushed, it can at once move in {_freedoms(mobility)}"
+    if record["uncontrolled"]:
+        free = "in every direction" if mobility == total else f"in {_freedoms(mobility)} at once"
+        return (
+            f"underdriven: its wheels let it move {free}, its motors command {record['controllable']} of them; "
+            f"the rest is left to push and slope"
+        )
     if mobility == total:
         return "holonomic: it can at once move in every direction"
     if record["holonomic"]:

@@ -6,6 +6,7 @@ names file, line and column, what was found and what was expected.
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 
@@ -105,6 +106,22 @@ def _check_size(size: float, node: Node, what: str) -> None:
     """Refuse what later sums and products could not hold; size [m | rad]."""
     if size > GREATEST:
         raise node.mark.error(f"found {describe(node)} as {what}, expected a size of a machine, below {GREATEST:g}")
+
+
+def rounding_of(node: Node, context: Context, what: str) -> float:
+    """How far a number in the units of the file may be off, as it is written. The number has been read before."""
+    return evaluate(expression_text(node, what), context.scope).rounding
+
+
+def roundings_of(node: Node, context: Context, what: str) -> Array:
+    """How far the components (3,) of a vector may be off, in the units of the file, as they are written."""
+    return np.array([*(rounding_of(item, context, what) for item in list_of(node, what)), 0.0][:3])
+
+
+def direction_roundings_of(node: Node, context: Context, what: str) -> Array:
+    """How far the components (3,) of a unit direction may be off, as those of the vector are written."""
+    length = math.hypot(*(raw_number_of(item, context.scope, what) for item in list_of(node, what)))
+    return roundings_of(node, context, what) / length
 
 
 def list_of(node: Node, what: str, length: int | tuple[int, int] | None = None) -> list[Node]:

@@ -52,10 +52,15 @@ LOOKALIKES = {
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A number, and whether it comes from `pi` outside `deg(…)`: that is what no angle in degrees may be."""
+    """A number, and whether it comes from `pi` outside `deg(…)`: that is what no angle in degrees may be.
+
+    rounding: how far the number may be off if each number in the text, and in the parameters that it names, is off by a
+    unit in its last place, to first order; 0 where they are exact.
+    """
 
     number: float
     mentions_pi: bool = False
+    rounding: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -113,6 +118,9 @@ def _unreadable(text: str, at: int) -> ExpressionError:
     return ExpressionError(f"found {word!r}, expected a number or an expression", text, at)
 
 
+ROUNDED = 3
+"""Digits that a number must be written with to be taken for a rounded one: nobody rounds a measure to 0.2 or 15."""
+
 RESERVED = ("pi", *FUNCTIONS, "nan", "inf", "infinity", *LOOKALIKES)
 """Names that no parameter may have, in lower case: they mean something already, or look as if they did."""
 
@@ -166,7 +174,8 @@ class Parser:
             if sign < 0:
                 self.expect("-")
             right = self.product()
-            value = self.finite(value.number + sign * right.number, value, right)
+            rounding = value.rounding + right.rounding
+            value = self.finite(value.number + sign * right.number, value, right, rounding=rounding)
         self.depth -= 1
         return value
 
@@ -181,7 +190,9 @@ class Parser:
                 raise self.error("found a division by zero, expected a divisor other than zero", token)
             quotient = token.text == "/"
             number = value.number / right.number if quotient else value.number * right.number
-            value = self.finite(number, value, right)
+            rounding = value.rounding * abs(right.number) + right.rounding * abs(value.number)
+            rounding = rounding / right.number**2 if quotient else rounding
+            value = self.finite(number, value, right, rounding=rounding)
         return value
 
     def signed(self) -> Value:
@@ -191,7 +202,7 @@ class Parser:
             negative ^= self.token.text == "-"
             self.index += 1
         value = self.power()
-        return Value(-value.number, value.mentions_pi) if negative else value
+        return Value(-value.number, value.mentions_pi, value.rounding) if negative else value
 
     def power(self) -> Value:
         """An atom, raised to a power if one follows; 2**3**2 is 2**(3**2)."""
@@ -204,14 +215,15 @@ class Parser:
             raise self.error(f"found more than {MAX_NESTING} levels of nesting, expected a simpler expression")
         exponent = self.signed()
         self.depth -= 1
-        return self.finite(self.call(math.pow, (base.number, exponent.number), "**", token), base, exponent)
+        number = self.call(math.pow, (base.number, exponent.number), "**", token)
+        return self.finite(number, base, exponent, rounding=_spread(math.pow, number, [base, exponent]))
 
     def atom(self) -> Value:
         """A literal, a name, a call, or an expression in parentheses."""
         token = self.token
         if token.kind == "number":
             self.index += 1
-            return self.finite(float(token.text))
+            return self.finite(float(token.text), rounding=last_place(token.text))
         if self.accept("("):
             value = self.number()
             self.expect(")")
@@ -262,9 +274,10 @@ class Parser:
             raise pi_in_degrees(self.text[start:stop], self.text, start)
         table = PLAIN if name in PLAIN else IN_DEGREES if self.scope.degrees else IN_RADIANS
         number = self.call(table[name], tuple(value.number for value in arguments), f"{name}()", token)
+        rounding = _spread(table[name], number, arguments)
         if name == "deg":
-            return self.finite(number)
-        return self.finite(number, *arguments)
+            return self.finite(number, rounding=rounding)
+        return self.finite(number, *arguments, rounding=rounding)
 
     def call(self, function: Function, arguments: tuple[float, ...], name: str, token: Token) -> float:
         """function(*arguments), its refusals in words."""
@@ -276,13 +289,13 @@ class Parser:
         except OverflowError:
             raise self.error("found a result that is too large, expected a finite number", token) from None
 
-    def finite(self, number: float, *origins: Value) -> Value:
+    def finite(self, number: float, *origins: Value, rounding: float = 0.0) -> Value:
         """A Value that is finite and remembers pi from where it came."""
         if not math.isfinite(number):
             raise self.error(
                 "found a result that is too large, expected a finite number", self.tokens[max(self.index - 1, 0)]
             )
-        return Value(number, any(origin.mentions_pi for origin in origins))
+        return Value(number, any(origin.mentions_pi for origin in origins), min(rounding, abs(number) + 1.0))
 
     def angle(self) -> float:
         """A number at a place where an angle is due, in the scope's angle unit."""
@@ -296,6 +309,34 @@ class Parser:
         """Raise unless all is read."""
         if self.token.kind != "end":
             raise self.error(f"found {self.found()}, expected the end of the expression")
+
+
+def last_place(text: str) -> float:
+    """The unit in the last place of a number as it is written, 0 where it has so few digits that it is exact."""
+    mantissa, _, exponent = text.lower().partition("e")
+    whole, point, fraction = mantissa.partition(".")
+    digits = (whole + fraction).lstrip("0")
+    # The zeros that end a whole number say nothing, those of 0.000 that it was rounded.
+    digits = digits if digits and point else digits.rstrip("0") or fraction
+    return float(10.0 ** (int(exponent or "0") - len(fraction))) if len(digits) >= ROUNDED else 0.0
+
+
+def _spread(function: Function, number: float, arguments: list[Value]) -> float:
+    """How far a function's value may be off with its arguments; as much as where it has none beside them."""
+    spread = 0.0
+    for i, argument in enumerate(arguments):
+        if not argument.rounding:
+            continue
+        sizes = [0.0]
+        for sign in (1.0, -1.0):
+            moved = [value.number for value in arguments]
+            moved[i] += sign * argument.rounding
+            try:
+                sizes.append(abs(float(function(*moved)) - number))
+            except (ValueError, ZeroDivisionError, OverflowError, TypeError):
+                continue
+        spread += max(size for size in sizes if math.isfinite(size))
+    return spread
 
 
 def pi_in_degrees(angle: str, text: str, position: int) -> ExpressionError:

@@ -30,20 +30,23 @@ def is_path(name: str) -> bool:
     return "/" in name or os.sep in name or bool(Path(name).suffix)
 
 
-def load_any(name_or_path: str | Path, overrides: Mapping[str, str] | None = None) -> Robot | Mechanism | WheeledBase:
+def load_any(
+    name_or_path: str | Path, overrides: Mapping[str, str] | None = None, mode: int | None = None
+) -> Robot | Mechanism | WheeledBase:
     """The robot, mechanism or wheeled base with a library name or in a file.
 
-    `overrides` replaces parameters by expressions in the file's units. Raises InputError for an unknown
-    name, with the nearest ones, and DescriptionError for a wrong description.
+    `overrides` replaces parameters by expressions in the file's units; `mode` is the way in which a mechanism by
+    lengths is put together, instead of the file's. Raises InputError for an unknown name, with the nearest ones, and
+    DescriptionError for a wrong description.
     """
     name = str(name_or_path)
     if isinstance(name_or_path, Path) or is_path(name):
-        return read_file(Path(name_or_path), overrides)
+        return read_file(Path(name_or_path), overrides, mode=mode)
     path = library_folder() / f"{name}.yaml"
     # os.path.isfile takes what no file can be called (too long, a null character) for a no.
     if not name or not os.path.isfile(path):  # noqa: PTH113 - it raises for none of them
         raise unknown_name(name)
-    return read_file(path, overrides, id=name)
+    return read_file(path, overrides, id=name, mode=mode)
 
 
 def unknown_name(name: str) -> InputError:

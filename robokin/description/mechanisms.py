@@ -11,35 +11,48 @@ from numpy.typing import NDArray
 from robokin.description.cells import (
     Context,
     choice_of,
+    direction_roundings_of,
     fields_of,
     flag_of,
     list_of,
-    names_of,
     number_of,
     raw_number_of,
+    rounding_of,
+    roundings_of,
     text_of,
     vector_of,
 )
+from robokin.description.gears import GEARED, gearing_of
+from robokin.description.lengths import LinkShape, assembled_joints, links_of, mode_of, placed, value_of
 from robokin.description.read import Head
-from robokin.description.schema import EXPECTED, FREEDOMS, MAX_ROWS, MECHANISM_JOINT, SPACES
+from robokin.description.schema import EXPECTED, FREEDOMS, MAX_ROWS, MECHANISM_JOINT, ONE_CONSTRAINT, SPACES
 from robokin.description.tree import Node
-from robokin.errors import did_you_mean, shown
-from robokin.model import Mechanism, MechanismJoint
+from robokin.errors import InputError, did_you_mean, or_list, shown
+from robokin.model import Mechanism, MechanismJoint, Rounding
+from robokin.model.blueprint import AssemblyMode
 from robokin.model.mechanism import LAMBDA
 
 Array = NDArray[np.float64]
 
-PLANE_ONLY = ("gear", "cam", "rolling")
-"""Contacts whose freedoms are those of the plane."""
+OWN_KEYS = {
+    "pitch": ("helical",), "axes": ("universal", "gear"), "normal": ("planar",), "freedoms": ("custom",),
+    "ratio": ("gear", "belt"), "teeth": ("gear", "belt"), "radii": ("belt",), "crossed": ("belt",),
+    "carrier": ("gear", "belt"),
+}  # fmt: skip
+"""Keys that belong to some types of joints."""
 
-OWN_KEYS = {"pitch": "helical", "axes": "universal", "normal": "planar", "freedoms": "custom"}
-"""Keys that belong to one type of joint."""
+OTHER_NAMES = {"chain": "belt with teeth", "bevel": "gear", "worm": "gear", "pin": "revolute", "hinge": "revolute",
+               "slider": "prismatic", "ball": "spherical", "screw": "helical"}  # fmt: skip
+"""What other books call a type of joint."""
 
 
-def read_mechanism(fields: MappingType[str, Node], head: Head) -> Mechanism:
-    """The mechanism with these fields. Raises DescriptionError."""
+def read_mechanism(fields: MappingType[str, Node], head: Head, mode: int | None = None) -> Mechanism:
+    """The mechanism with these fields; `mode`: which way to put it together, if its links have lengths.
+
+    Raises DescriptionError, and InputError for a mode that there is not.
+    """
     space = choice_of(fields["space"], SPACES, "the space")
-    links = names_of(fields["links"], "the links")
+    links, shapes = links_of(fields["links"], head.context, space == "planar")
     if len(links) < 2:
         raise fields["links"].mark.error(f"found {_links(len(links))}, expected at least two: the ground is one")
     if len(links) > MAX_ROWS:
@@ -63,6 +76,7 @@ def read_mechanism(fields: MappingType[str, Node], head: Head) -> Mechanism:
             )
         names[joint.name] = i
         joints.append(joint)
+    modes, mode, whole = _assembled(fields, joints, shapes, ground, space, mode, head)
     output = _link(fields["output"], links, "the output") if "output" in fields else ""
     if output == ground:
         raise fields["output"].mark.error(
@@ -81,7 +95,39 @@ def read_mechanism(fields: MappingType[str, Node], head: Head) -> Mechanism:
         source=head.source,
         units=head.context.units,
         parameters=head.parameters,
+        ground_named="ground" in fields,
+        modes=modes,
+        mode=mode,
+        modes_complete=whole,
     )
+
+
+def _assembled(
+    fields: MappingType[str, Node], joints: list[MechanismJoint], shapes: dict[str, LinkShape], ground: str, space: str,
+    mode: int | None, head: Head,
+) -> tuple[tuple[AssemblyMode, ...], int, bool]:  # fmt: skip
+    """Put joints in the places that lengths say; the ways there are, the number of the one, whether those are all."""
+    cells = [fields_of(node, MECHANISM_JOINT, "a joint") for node in list_of(fields["joints"], "the joints")]
+    values: dict[str, float] = {}
+    for joint, given in zip(joints, cells, strict=True):
+        if "value" not in given:
+            continue
+        if joint.type not in ("revolute", "prismatic") or space != "planar":
+            raise given["value"].mark.error(
+                f"found 'value' of joint {shown(joint.name)}, expected it on hinges and slides of planar mechanisms"
+            )
+        values[joint.name] = value_of(given["value"], joint.type, f"of joint {shown(joint.name)}", head.context)
+    if not values and not any(shape.stated for shape in shapes.values()):
+        if mode is not None:
+            raise InputError(f"--mode: {head.name} has the places of its joints, expected a mechanism by lengths")
+        if "mode" in fields:
+            raise fields["mode"].mark.error("found 'mode' without lengths of links, expected it with `length` of links")
+        return (), 0, True
+    mark = fields["links"].mark
+    ways = assembled_joints(tuple(joints), cells, values, shapes, ground, mark, head.context)
+    mode = mode_of(fields.get("mode"), mode, len(ways.modes), head.context, head.name)
+    joints[:] = placed(tuple(joints), ways.modes[mode - 1], shapes, ground)
+    return ways.modes, mode, ways.complete
 
 
 def _expected(node: Node, context: Context) -> dict[str, int]:
@@ -100,29 +146,62 @@ def _joint(
 ) -> MechanismJoint:
     name = text_of(cells["name"], f"the name of joint {i}") if "name" in cells else str(i)
     where = f"of joint {shown(name)}"
-    kind = choice_of(cells["type"], MECHANISM_JOINT["type"].choices, f"the type {where}")
+    kind = _type(cells["type"], where)
     joined = tuple(_link(item, links, f"a link {where}") for item in list_of(cells["links"], f"the links {where}"))
     if len(joined) < 2:
         raise cells["links"].mark.error(f"found {_links(len(joined))} {where}, expected at least two")
     if len(set(joined)) < len(joined):
         raise cells["links"].mark.error(f"found a link twice in the links {where}, expected different links")
-    if kind in PLANE_ONLY and space != "planar":
+    if kind == "rolling" and space != "planar":
         raise cells["type"].mark.error(
             f"found '{kind}' {where} in a {space} mechanism, expected it in a planar one: use type custom with freedoms"
         )
-    for key, owner in OWN_KEYS.items():
-        if key in cells and kind != owner:
-            raise cells[key].mark.error(f"found '{key}' {where}, a {kind} joint, expected it only on type {owner}")
+    for key, owners in OWN_KEYS.items():
+        if key in cells and kind not in owners:
+            raise cells[key].mark.error(
+                f"found '{key}' {where}, a {kind} joint, expected it only on type {or_list(owners)}"
+            )
+    gearing, meshes = gearing_of(cells, kind, space, joined, where, context)
+    axes = _axes(cells, kind, space, where, context)
     return MechanismJoint(
         name=name,
         type=kind,
         links=joined,
         freedoms=_freedoms(cells, kind, LAMBDA[space], where, context),
         at=_at(cells["at"], space, where, context) if "at" in cells else None,
-        axes=_axes(cells, kind, space, where, context),
+        axes=axes,
         pitch=_pitch(cells, where, context),
         actuated=flag_of(cells["actuated"], f"actuated {where}") if "actuated" in cells else False,
+        gearing=gearing,
+        meshes=meshes,
+        carrier=_link(cells["carrier"], links, f"the carrier {where}") if "carrier" in cells else "",
+        rounding=_rounding(cells, 0 if axes is None else len(axes), where, context),
     )
+
+
+def _type(node: Node, where: str) -> str:
+    """The type of a joint; what other books call it is answered with our word."""
+    choices = MECHANISM_JOINT["type"].choices
+    text = text_of(node, f"the type {where}: {or_list(choices)}")
+    if text.casefold() in OTHER_NAMES:
+        raise node.mark.error(f"found '{shown(text)}' as the type {where}, expected {OTHER_NAMES[text.casefold()]}")
+    return choice_of(node, choices, f"the type {where}")
+
+
+def _rounding(cells: MappingType[str, Node], count: int, where: str, context: Context) -> Rounding:
+    """How far the numbers of a joint with `count` axes may be off, as they are written; they have been read before."""
+    at, axes, pitch = np.zeros(3), np.zeros((count, 3)), 0.0
+    if "at" in cells:
+        at = roundings_of(cells["at"], context, f"at {where}") * context.units.metres
+    if "axes" in cells:
+        nodes = list_of(cells["axes"], f"axes {where}")
+    else:
+        nodes = [cells[key] for key in ("axis", "normal") if key in cells][:1]
+    for i, node in enumerate(nodes[:count]):
+        axes[i] = direction_roundings_of(node, context, f"axes {where}")
+    if "pitch" in cells:
+        pitch = rounding_of(cells["pitch"], context, f"pitch {where}") * context.units.metres / (2.0 * math.pi)
+    return Rounding(at, axes, pitch)
 
 
 def _links(count: int) -> str:
@@ -144,6 +223,8 @@ def _link(node: Node, links: tuple[str, ...], what: str) -> str:
 
 def _freedoms(cells: MappingType[str, Node], kind: str, most: int, where: str, context: Context) -> int:
     """What the joint lets two links do against each other: at most what the space has, λ."""
+    if kind in ONE_CONSTRAINT:
+        return most - 1
     if kind != "custom":
         return FREEDOMS[kind]
     if "freedoms" not in cells:
@@ -168,9 +249,11 @@ def _axes(cells: MappingType[str, Node], kind: str, space: str, where: str, cont
     if "axes" in cells:
         pair = list_of(cells["axes"], f"axes {where}", 2)
         axes = np.array([vector_of(item, context, f"axes {where}", direction=True, plane=plane) for item in pair])
-        if np.linalg.norm(np.cross(axes[0], axes[1])) < 1e-9:
+        if kind == "universal" and np.linalg.norm(np.cross(axes[0], axes[1])) < 1e-9:
             raise cells["axes"].mark.error(f"found parallel axes {where}, expected two directions")
         return axes
+    if kind in ONE_CONSTRAINT and (not plane or kind == "belt" or any(key in cells for key in GEARED)):
+        return None  # what is known of it is its ratio
     for key in ("axis", "normal"):
         if key in cells:
             return vector_of(cells[key], context, f"{key} {where}", direction=True, plane=plane)[None]

@@ -31,12 +31,13 @@ class Head:
 
 
 def read_file(
-    path: Path, overrides: MappingType[str, str] | None = None, id: str = ""
+    path: Path, overrides: MappingType[str, str] | None = None, id: str = "", mode: int | None = None
 ) -> Robot | Mechanism | WheeledBase:
     """The robot, mechanism or wheeled base in a file.
 
-    `overrides` replaces parameters by expressions in the file's units. Raises DescriptionError with
-    line and column when the description is wrong, InputError when the file cannot be read.
+    `overrides` replaces parameters by expressions in the file's units, `mode` says in which way a mechanism by lengths
+    is put together. Raises DescriptionError with line and column when the description is wrong, InputError when the
+    file cannot be read.
     """
     place = str(path)
     try:
@@ -58,11 +59,15 @@ def read_file(
         before = error.object[: error.start]  # without the byte order mark
         line, column = before.count(b"\n") + 1, len(before[before.rfind(b"\n") + 1 :].decode("utf-8")) + 1
         raise DescriptionError("found bytes that are no text, expected YAML in UTF-8", place, line, column) from None
-    return read_text(text, place, overrides, id or path.stem)
+    return read_text(text, place, overrides, id or path.stem, mode)
 
 
 def read_text(
-    text: str, file: str = "description", overrides: MappingType[str, str] | None = None, id: str = ""
+    text: str,
+    file: str = "description",
+    overrides: MappingType[str, str] | None = None,
+    id: str = "",
+    mode: int | None = None,
 ) -> Robot | Mechanism | WheeledBase:
     """The robot, mechanism or wheeled base that a text describes; `file` is the name that errors give it."""
     root = read_tree(text, file)
@@ -80,6 +85,8 @@ def read_text(
     else:
         fields = fields_of(root, MECHANISM if mechanism else ROBOT, "a mechanism" if mechanism else "a robot")
     head = _head(fields, overrides or {}, id, file)
+    if mode is not None and not mechanism:
+        raise InputError(f"--mode: {head.name} is no mechanism, expected a mechanism whose links have lengths")
     # Only the reader that is needed is imported: it is part of the time that a command takes to start.
     if wheeled:
         from robokin.description.wheeled import read_wheeled
@@ -88,7 +95,7 @@ def read_text(
     if mechanism:
         from robokin.description.mechanisms import read_mechanism
 
-        return read_mechanism(fields, head)
+        return read_mechanism(fields, head, mode)
     from robokin.description.robots import read_robot
 
     return read_robot(fields, head)

@@ -77,11 +77,19 @@ FRAME_ROW: Fields = {
 MECHANISM: Fields = {
     **COMMON,
     "space": Field("text", "the space that the links move in", required=True, choices=SPACES),
-    "links": Field("names", "the links' names; the first is the ground", required=True),
+    "links": Field("links", "the links, by name or with their lengths; the first is the ground", required=True),
     "ground": Field("text", "the link that stands still, if it is not the first"),
     "joints": Field("mechanism_joints", "the joints between the links", required=True),
+    "mode": Field("number", "which of the ways to put links of given lengths together is meant; default 1"),
     "output": Field("text", "the link whose motion the mechanism serves; `robokin dof` says how it moves"),
     "expected": Field("expected", "what the source says of its freedoms, to be compared with what is found"),
+}
+
+LINK: Fields = {
+    "name": Field("text", "the link's name", required=True),
+    "length": Field("number", "the distance of its two joints; its x axis runs from the first of them to the second"),
+    "places": Field("places", "where its joints are in its own frame, [x, y] by joint"),
+    "directions": Field("directions", "in which direction slides run there, an angle from its x axis by joint"),
 }
 
 EXPECTED: Fields = {
@@ -94,9 +102,12 @@ EXPECTED: Fields = {
 
 FREEDOMS = {
     "fixed": 0, "revolute": 1, "prismatic": 1, "helical": 1, "cylindrical": 2, "universal": 2,
-    "spherical": 3, "planar": 3, "rolling": 1, "gear": 2, "cam": 2,
+    "spherical": 3, "planar": 3, "rolling": 1, "gear": 2, "cam": 2, "belt": 2,
 }  # fmt: skip
-"""Freedoms f of the joint types; `custom` states its own."""
+"""Freedoms f of the joint types; `custom` states its own, and those of `ONE_CONSTRAINT` depend on the space."""
+
+ONE_CONSTRAINT = ("gear", "cam", "belt")
+"""Joints that take one freedom whatever space they are in: f = λ - 1, 2 in the plane and on the sphere, 5 in space."""
 
 MECHANISM_JOINT: Fields = {
     "name": Field("text", "the joint's name"),
@@ -104,15 +115,24 @@ MECHANISM_JOINT: Fields = {
     "links": Field("names", "the two or more links that it joins", required=True),
     "at": Field("point", "a point on the joint in the assembled configuration"),
     "axis": Field("vector", "its direction in the assembled configuration"),
-    "axes": Field("vectors", "the two directions of a universal joint"),
+    "axes": Field("vectors", "the two directions of a universal joint, or those about which a gear's turns count"),
     "normal": Field("vector", "the normal of a planar joint's plane"),
     "pitch": Field("number", "a helical joint's advance along its axis in one turn"),
     "freedoms": Field("number", "the freedoms of a custom joint"),
+    "ratio": Field("number", "turns of a gear's or belt's first wheel for one of the second; below 0 the other way"),
+    "teeth": Field("numbers", "the teeth of a gear's or chain's wheels, in the order of its links"),
+    "radii": Field("numbers", "the radii of a belt's pulleys; below 0 those that run on its back"),
+    "crossed": Field("flag", "whether a belt is crossed between its two pulleys"),
+    "carrier": Field("text", "the link that carries the wheels, where more than one could"),
+    "value": Field(
+        "number",
+        "in a mechanism by lengths: how far the second link is turned or has slid, of the ground's joints the other",
+    ),
     "actuated": Field("flag", "whether the joint is driven"),
 }
 
 KINDS = ("wheeled",)
-WHEEL_TYPES = ("fixed", "steered", "castor", "swedish")
+WHEEL_TYPES = ("fixed", "steered", "castor", "swedish", "ball")
 STEERINGS = ("independent", "parallel")
 
 WHEELED: Fields = {
@@ -140,6 +160,7 @@ BASE_EXPECTED: Fields = {
     "mobility": Field("number", "the degree of mobility"),
     "steerability": Field("number", "the degree of steerability"),
     "manoeuvrability": Field("number", "the degree of manoeuvrability: the sum of both"),
+    "controllable": Field("number", "the freedoms, of the degree of mobility, that the motors command"),
 }
 
 
@@ -164,6 +185,10 @@ def json_schema() -> dict[str, Any]:
         "expected": _object(EXPECTED),
         "base_expected": _object(BASE_EXPECTED),
         "limits": {**numbers, "minItems": 2, "maxItems": 2},
+        "links": {"type": "array", "items": {"anyOf": [text, _object(LINK)]}, "minItems": 2},
+        "places": {"type": "object", "additionalProperties": {**numbers, "minItems": 2, "maxItems": 3}},
+        "directions": {"type": "object", "additionalProperties": number},
+        "numbers": {**numbers, "minItems": 2},
         "names": {"type": "array", "items": text, "minItems": 2},
         "vector": {**numbers, "minItems": 2, "maxItems": 3},
         "point": {**numbers, "minItems": 2, "maxItems": 3},

@@ -26,7 +26,8 @@ OWN_KEYS = {"offset": ("castor",), "roller": ("swedish",), "turned": ("steered",
 """Keys that belong to some types of wheels."""
 
 OTHER_NAMES = {"omni": "swedish with roller: 90 degrees", "mecanum": "swedish with roller: 45 degrees",
-               "steering": "steered", "standard": "fixed", "caster": "castor"}  # fmt: skip
+               "steering": "steered", "standard": "fixed", "caster": "castor",
+               "spherical": "ball", "sphere": "ball"}  # fmt: skip
 """What other books call a type of wheel."""
 
 NO_ROLL = 1e-6

@@ -8,12 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.errors import InputError
+from robokin.mobility.blocks import spread_of
+from robokin.mobility.couplings import contact_rows
+from robokin.mobility.gears import gear_rows
 from robokin.mobility.linkage import Linkage
+from robokin.mobility.pins import pairs
 from robokin.mobility.screws import Element, elements_of, has_geometry
-from robokin.model import Mechanism
+from robokin.model import Mechanism, MechanismJoint
 from robokin.spatial import transform
 
 Array = NDArray[np.float64]
+
+CONTACTS = ("gear", "cam", "rolling", "belt")
+"""Joints of wheels, or at a point that may wander on both links."""
 
 STRAIGHT = 1e-9
 """Sine of an angle, or distance in the mechanism's size, up to which axes are parallel or meet."""
@@ -24,7 +31,8 @@ class Assembly:
     """A linkage and the mechanism that it stands for.
 
     size: the mechanism's characteristic length [m], the linkage's unit; middle: (3,) [m] the linkage's origin; own:
-    (f,) the number, in the mechanism's list, of the joint that each of the linkage's freedoms belongs to.
+    (f,) the number, in the mechanism's list, of the joint that each of the linkage's freedoms belongs to; tied: for
+    each of the linkage's rows the joints that it couples, by name, the one that makes it first.
     """
 
     mechanism: Mechanism
@@ -32,6 +40,13 @@ class Assembly:
     size: float
     middle: Array
     own: NDArray[np.intp]
+    tied: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def wandering(self) -> tuple[str, ...]:
+        """The contacts whose points wander on their links: they are known at the given configuration only."""
+        rows = {names[0] for names in self.tied}
+        return tuple(j.name for j in self.mechanism.joints if j.type in CONTACTS and j.name not in rows)
 
     def link(self, name: str) -> int:
         """The body of a link."""
@@ -49,13 +64,11 @@ def missing_geometry(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def size_of(mechanism: Mechanism) -> float:
-    """The characteristic length [m]: the spread of the joints about their middle, or 1."""
+    """The characteristic length [m]: the spread of the joints about their middle; of screws in one point the greatest
+    pitch [m/rad]; or 1."""
     points = np.array([joint.at for joint in mechanism.joints if joint.at is not None]).reshape(-1, 3)
-    if not len(points):
-        return 1.0
-    spread = float(np.max(np.linalg.norm(points - points.mean(axis=0), axis=1)))
-    # The mean of equal points is off by rounding: that is no size.
-    return spread if spread > 1e-12 * np.max(np.abs(points)) else 1.0
+    pitches = [abs(joint.pitch) for joint in mechanism.joints if joint.type == "helical"]
+    return spread_of(points, max(pitches, default=0.0))
 
 
 def assembled(mechanism: Mechanism) -> Assembly:
@@ -67,23 +80,62 @@ def assembled(mechanism: Mechanism) -> Assembly:
         )
     size = size_of(mechanism)
     middle = _middle(mechanism)
+    ground = mechanism.links.index(mechanism.ground)
+    rows: dict[str, tuple[Array, tuple[str, ...]]] = {}
+    contacts = [joint for joint in mechanism.joints if joint.type in CONTACTS]
+    if contacts:
+        _, elements, _ = _elements(mechanism, {joint.name for joint in contacts}, middle, size)
+        for joint in contacts:
+            if joint.gearing:
+                rows[joint.name] = gear_rows(joint, mechanism.links, elements, middle, size)
+                continue
+            a, b = (mechanism.links.index(link) for link in joint.links[:2])
+            found = contact_rows(joint, (a, b), elements, middle, size) if len(joint.links) == 2 else None
+            if found is not None:
+                rows[joint.name] = found
+        # Contacts that stay joints have freedoms of their own, which no row is about.
+    bodies, elements, own = _elements(mechanism, set(rows), middle, size)
+    if rows:
+        rows = {name: (_spread(found[0], elements, contacts), found[1]) for name, found in rows.items()}
+    stacked = np.concatenate([part for part, _ in rows.values()]) if rows else None
+    tied = tuple(names for part, names in rows.values() for _ in part)
+    linkage = Linkage(bodies, ground, elements, stacked)
+    return Assembly(mechanism, linkage, size, middle, np.array(own, dtype=np.intp), tied)
+
+
+def _elements(
+    mechanism: Mechanism, without: set[str], middle: Array, size: float
+) -> tuple[int, list[Element], list[int]]:
+    """The number of bodies, the elementary joints but for those of some joints, and whose each freedom is."""
     bodies = len(mechanism.links)
+    number_of = {name: number for number, name in enumerate(mechanism.links)}
     elements: list[Element] = []
     own: list[int] = []
+    joined = pairs([tuple(number_of[name] for name in joint.links) for joint in mechanism.joints])
     for number, joint in enumerate(mechanism.joints):
-        a = mechanism.links.index(joint.links[0])
-        for name in joint.links[1:]:
-            b, before = mechanism.links.index(name), a
+        if joint.name in without:
+            continue
+        for a, b in joined[number]:
+            before = a
             parts = elements_of(joint, middle, size)
+            at = None if joint.at is None else (joint.at - middle) / size
             for k, (screws, labels) in enumerate(parts):
                 after = b
                 if k < len(parts) - 1:
                     after, bodies = bodies, bodies + 1
-                elements.append(Element(joint.name, before, after, screws, labels))
+                elements.append(Element(joint.name, before, after, screws, labels, at))
                 own += [number] * len(screws)
                 before = after
-    linkage = Linkage(bodies, mechanism.links.index(mechanism.ground), elements)
-    return Assembly(mechanism, linkage, size, middle, np.array(own, dtype=np.intp))
+    return bodies, elements, own
+
+
+def _spread(rows: Array, elements: list[Element], contacts: list[MechanismJoint]) -> Array:
+    """Equations (m, f) between the freedoms of all joints but contacts, with places for the contacts' freedoms."""
+    names = {joint.name for joint in contacts}
+    keep = np.concatenate([np.full(len(e.screws), e.name not in names) for e in elements])
+    spread = np.zeros((len(rows), len(keep)))
+    spread[:, keep] = rows
+    return spread
 
 
 def _middle(mechanism: Mechanism) -> Array:
@@ -107,7 +159,7 @@ def space_fault(mechanism: Mechanism) -> str | None:
     """Why the mechanism does not live in the space that it says, or None: planar hinges must be parallel, …"""
     if mechanism.space == "planar":
         for joint in mechanism.joints:
-            if joint.axes is None or joint.type in ("gear", "cam"):
+            if joint.axes is None or joint.type in ("gear", "cam", "belt"):
                 continue
             out = np.abs(joint.axes[:, 2])
             in_plane = joint.type == "prismatic"

@@ -14,6 +14,10 @@ each joint outside the tree closes a loop. Twists in the world's frame add: with
 
     xi_i = Σ_j P_ij S_j dq_j,    and for each loop  Σ_j M_lj S_j dq_j = 0,    M_c = P_a + e_c - P_b.
 
+Rows. What couples joints beside the loops, gears whose wheels turn on one carrier, are linear equations with constant
+coefficients, R q = 0 in the joints' values q. They hold for joints whose freedoms commute (hinges, slides, screws,
+cylindrical joints): the values of others do not add.
+
 Moving. Every joint is moved within its subgroup, h ← exp(S dq) h, so that joints never come apart; what a loop
 then lacks, the logarithm of g_a h_c g_b⁻¹, is closed by Newton steps with the pseudo-inverse of M S.
 
@@ -48,21 +52,24 @@ NEWTON_STEPS = 25
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Where a linkage is: bodies (n, 4, 4) and joints (j, 4, 4), displacements from the reference."""
+    """Where a linkage is: bodies (n, 4, 4) and joints (j, 4, 4), displacements from the reference, and how far each
+    freedom has gone, values (f,) [rad | size]: exact where a joint's freedoms commute."""
 
     bodies: Array
     joints: Array
+    values: Array
 
 
 class Linkage:
     """Bodies and elementary joints in units of the mechanism's size.
 
     screws: (f, 6) the twists of all freedoms at the reference; joint, body: (f,) the joint of each and the body
-    that carries it; paths: (n, j) the signs with which joints lead from the ground to each body; loops: (l, j).
+    that carries it; paths: (n, j) the signs with which joints lead from the ground to each body; loops: (l, j); rows:
+    (m, f) linear equations between the joints' values, beside the loops.
     """
 
-    def __init__(self, bodies: int, ground: int, elements: list[Element]) -> None:
-        self.elements = elements
+    def __init__(self, bodies: int, ground: int, elements: list[Element], rows: Array | None = None) -> None:
+        self.elements, self.ground = elements, ground
         self.screws = np.concatenate([e.screws for e in elements]) if elements else np.zeros((0, 6))
         counts = [len(e.screws) for e in elements]
         self.joint = np.repeat(np.arange(len(elements)), counts)
@@ -75,7 +82,14 @@ class Linkage:
         for row, j in zip(self.loops, chords, strict=True):
             row += self.paths[elements[j].a] - self.paths[elements[j].b]
             row[j] += 1.0
-        self.reference = State(np.tile(np.eye(4), (bodies, 1, 1)), np.tile(np.eye(4), (len(elements), 1, 1)))
+        self.rows = np.zeros((0, len(self.screws))) if rows is None else rows
+        unmoved = np.tile(np.eye(4), (bodies, 1, 1)), np.tile(np.eye(4), (len(elements), 1, 1))
+        self.reference = State(*unmoved, np.zeros(len(self.screws)))
+
+    @property
+    def bodies(self) -> tuple[int, ...]:
+        """The bodies that joints lead to, the ground first, nearer ones before those beyond."""
+        return (self.ground, *(body for body, _, _ in self.order))
 
     @property
     def freedoms(self) -> int:
@@ -87,9 +101,10 @@ class Linkage:
         return moved_screws(state.bodies[self.body], self.screws)
 
     def jacobian(self, state: State) -> Array:
-        """The loops' equations (6 l, f): what joint speeds must not add up to."""
+        """The equations of loops and rows (6 l + m, f): what joint speeds must not add up to."""
         S = self.twists(state)
-        return np.asarray((self.loops[:, None, self.joint] * S.T).reshape(6 * len(self.loops), len(S)))
+        loops = (self.loops[:, None, self.joint] * S.T).reshape(6 * len(self.loops), len(S))
+        return np.concatenate([loops, self.rows])
 
     def body_twists(self, state: State, speeds: Array) -> Array:
         """The twists (n, 6, k) of the bodies for joint speeds (f, k)."""
@@ -100,21 +115,24 @@ class Linkage:
         """The state after every joint has moved by dq (f,) within its subgroup."""
         steps = np.zeros((len(self.elements), 6))
         np.add.at(steps, self.joint, self.screws * dq[:, None])
-        joints = exponential(steps) @ state.joints
-        bodies = state.bodies.copy()
+        return self.placed(exponential(steps) @ state.joints, state.values + dq)
+
+    def placed(self, joints: Array, values: Array) -> State:
+        """The state with displacements (j, 4, 4) of the joints; of those that close loops, too."""
+        bodies = self.reference.bodies.copy()
         for body, j, parent in self.order:
             h = joints[j] if self.elements[j].a == parent else invert(joints[j])
             bodies[body] = bodies[parent] @ h
-        return State(bodies, joints)
+        return State(bodies, joints, values)
 
     def lack(self, state: State) -> Array:
-        """What the loops lack of closing (6 l,) [size, rad]."""
+        """What the loops lack of closing and the rows of zero (6 l + m,) [size, rad]."""
         if not self.chords:
-            return np.zeros(0)
+            return np.asarray(self.rows @ state.values)
         a = [self.elements[j].a for j in self.chords]
         b = [self.elements[j].b for j in self.chords]
         gap = state.bodies[a] @ state.joints[self.chords] @ invert(state.bodies[b])
-        return logarithm(gap).reshape(-1)
+        return np.concatenate([logarithm(gap).reshape(-1), self.rows @ state.values])
 
     def closed(
         self,

@@ -2,53 +2,36 @@
 
 from __future__ import annotations
 
-from robokin.mobility.mobility import NEARLY, Motion
+from robokin.mobility.mobility import Motion
 from robokin.model import Mechanism
-
-APART = 30.0
-"""Singular values of a geometry that is not quite exact stand apart from the others by more than this factor."""
 
 SPACES = {"planar": "in the plane", "spherical": "on the sphere", "spatial": "in space"}
 
 
-def nearly_more(motion: Motion) -> int:
-    """How many more motions there would be if the geometry were exact: singular values small and apart."""
-    if not motion.nearly:
-        return 0
-    counted = motion.values[: motion.rank]
-    regular = counted[counted >= NEARLY]
-    small = counted[counted < NEARLY]
-    if len(regular) and regular[-1] < APART * small[0]:
-        return 0
-    return len(small)
-
-
-def reason(mechanism: Mechanism, count: int, motion: Motion, verdict: str, strained: tuple[str, ...]) -> str | None:
+def reason(
+    mechanism: Mechanism, count: int, motion: Motion, verdict: str, strained: tuple[str, ...], nearly: int
+) -> str | None:
     """Why count and truth differ, or what else is special; None where there is nothing to say."""
     true = motion.finite
     if verdict == "right":
         if count < 0:
             return f"rigid, as a count below 0 says: {-count} constraint{_s(-count)} more than it takes"
         return None
+    if verdict == "undecided":
+        return (
+            f"undecided: {motion.undecided}; of {motion.instantaneous} instantaneous "
+            f"freedom{_s(motion.instantaneous)} {_between(motion.finite, motion.most)}"
+        )
     if verdict == "nearly":
-        more = nearly_more(motion)
-        size = motion.values[motion.rank - more]
-        would = motion.instantaneous + more
+        size = motion.values[motion.rank - nearly]
+        would = motion.instantaneous + nearly
         return (
             f"would have {would} freedom{_s(would)} if its dimensions were exact: they miss by about {size:.1g} of its "
             "size; give them as expressions, or with more digits"
         )
     if verdict == "shaky":
-        infinitesimal = f"{motion.generic} infinitesimal motion{_s(motion.generic)}"
-        forbids = "that no constraint forbids at first sight"
-        if not true:
-            lead = "leads" if motion.generic == 1 else "lead"
-            return f"shaky: {infinitesimal} {forbids} {lead} nowhere, it is only a tremble"
-        lead = "leads" if true == 1 else "lead"
-        return f"shaky: of {infinitesimal} {forbids} only {true} {lead} somewhere, the rest is a tremble"
-    here = ""
-    if motion.instantaneous > motion.generic:
-        here = f"singular pose: {motion.instantaneous} instantaneous freedoms here, {motion.generic} away from it"
+        return _trembles(motion)
+    here = _here(motion)
     if true == count:
         return here or None
     where = f" (shared by {_listed(strained)})" if strained else ""
@@ -61,6 +44,44 @@ def reason(mechanism: Mechanism, count: int, motion: Motion, verdict: str, strai
     else:
         why = f"the count promises {count}, but {true} freedom{_s(true)} remain{_s(2 if true == 1 else 1)}{where}"
     return f"{here}; {why}" if here else why
+
+
+def _between(least: int, most: int) -> str:
+    """How many freedoms are a motion, as far as it is known."""
+    if least == most:
+        return f"{least} {'is' if least == 1 else 'are'} known to be a motion, but not all branches are known"
+    return f"at least {least} and at most {most} {'is a motion' if most == 1 else 'are motions'}"
+
+
+def _trembles(motion: Motion) -> str:
+    """What only trembles, and which order of the constraints forbids it."""
+    true = motion.finite
+    infinitesimal = f"{motion.generic} infinitesimal motion{_s(motion.generic)}"
+    forbids = "that no constraint forbids at first sight"
+    end = "" if motion.order in (None, 2) else f": constraints of order {motion.order} forbid it"
+    if not true:
+        lead = "leads" if motion.generic == 1 else "lead"
+        return f"shaky: {infinitesimal} {forbids} {lead} nowhere, it is only a tremble{end}"
+    lead = "leads" if true == 1 else "lead"
+    return f"shaky: of {infinitesimal} {forbids} only {true} {lead} somewhere, the rest is a tremble{end}"
+
+
+def _here(motion: Motion) -> str:
+    """What is special of the pose; "" where nothing is."""
+    here = ""
+    if motion.instantaneous > motion.generic or motion.count > 1:
+        here = f"singular pose: {motion.instantaneous} instantaneous freedoms here, {motion.generic} away from it"
+    if motion.count > 1:
+        sizes = [course.dimension for course in motion.courses]
+        if len(set(sizes)) == 1:
+            of = f"{sizes[0]} freedom{_s(sizes[0])} each"
+        else:
+            of = ", ".join(str(size) for size in sizes[:8]) + (", …" if motion.count > 8 else "") + " freedoms"
+        here += f"; {motion.count} branches of configurations meet in it, of {of}"
+    if motion.finite < motion.generic:
+        here += f"; of {motion.generic} infinitesimal motions along the greatest only {motion.finite} "
+        here += f"{'leads' if motion.finite == 1 else 'lead'} somewhere"
+    return here
 
 
 def _s(count: int) -> str:

@@ -6,36 +6,57 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.mobility.assembly import Assembly
-from robokin.mobility.linkage import RANK, State
-from robokin.mobility.mobility import Motion
+from robokin.mobility.linkage import RANK, Linkage
+from robokin.mobility.mobility import STILL, Motion
 
 Array = NDArray[np.float64]
-
-STILL = 1e-7
-"""A joint whose part in every motion is less never moves."""
 
 PLANE = (0, 1, 5)
 """The parts of a twist that a motion in the plane has: x, y and the turn about z."""
 
 
-def shares(assembly: Assembly, T: Array) -> list[float]:
-    """How much each of the mechanism's joints takes part in motions T (f, k)."""
-    sizes = np.zeros(len(assembly.mechanism.joints))
-    np.maximum.at(sizes, assembly.own, np.linalg.norm(T, axis=1) if T.size else np.zeros(len(T)))
-    return [float(size) for size in sizes]
+def still_freedoms(linkage: Linkage, motion: Motion) -> NDArray[np.bool_]:
+    """Freedoms (f,) that only tremble along a branch where constraints vanish many times: steps that do not hold them
+    would go along with them as far as rounding lets them."""
+    moving = np.isin(linkage.joint, list(set().union(*(course.moving for course in motion.courses))))
+    many = np.zeros(linkage.freedoms, dtype=bool)
+    for part in motion.parts:
+        many[part.block.freedoms] = part.branches[0].times > 1
+    return np.asarray(many & ~moving)
 
 
-def strained_joints(assembly: Assembly, state: State) -> tuple[str, ...]:
+def moving_joints(assembly: Assembly, elements: frozenset[int]) -> tuple[str, ...]:
+    """The mechanism's joints that move where these of the linkage's elements do; a gear with the joints it couples."""
+    names = {assembly.linkage.elements[number].name for number in elements}
+    names |= {own[0] for own in assembly.tied if names & set(own[1:])}
+    return tuple(joint.name for joint in assembly.mechanism.joints if joint.name in names)
+
+
+def strained_joints(assembly: Assembly, motion: Motion) -> tuple[str, ...]:
     """The joints through which redundant constraints can strain the mechanism, in the space that it lives in."""
-    linkage, loops = assembly.linkage, len(assembly.linkage.loops)
+    linkage, loops = assembly.linkage, assembly.linkage.loops
     # In the plane two forces and a moment are constraints that λ = 3 counts; the rest is strained by every loop.
-    rows = PLANE if assembly.mechanism.space == "planar" else slice(None)
-    J = linkage.jacobian(state).reshape(loops, 6, -1)[:, rows]
-    U, values, _ = np.linalg.svd(J.reshape(-1, J.shape[2]))
-    left = U[:, int(np.sum(values > RANK * values[:1])) :].reshape(loops, J.shape[1], -1)
-    strains = np.einsum("lj,lck->jck", linkage.loops, left).reshape(len(linkage.elements), -1)
-    names = (e.name for e, size in zip(linkage.elements, np.linalg.norm(strains, axis=1), strict=True) if size > STILL)
-    return tuple(dict.fromkeys(names))
+    kept = PLANE if assembly.mechanism.space == "planar" else tuple(range(6))
+    J = linkage.jacobian(motion.state)
+    by_loop, rows = J[: 6 * len(loops)].reshape(len(loops), 6, linkage.freedoms)[:, kept], J[6 * len(loops) :]
+    found: set[str] = set()
+    for part in motion.parts:
+        own = part.block.freedoms
+        (chords,) = np.nonzero(np.isin(linkage.chords, part.block.elements))
+        (tied,) = np.nonzero(np.any(rows[:, own] != 0.0, axis=1) | ~np.any(rows != 0.0, axis=1))
+        equations = len(chords) * len(kept)
+        U, values, _ = np.linalg.svd(
+            np.concatenate([by_loop[chords][:, :, own].reshape(equations, len(own)), rows[tied][:, own]])
+        )
+        left = U[:, int(np.sum(values > RANK * values[:1])) :]
+        strains = np.einsum(
+            "lj,lck->jck", loops[chords], left[:equations].reshape(len(chords), len(kept), left.shape[1])
+        )
+        for number in np.nonzero(np.linalg.norm(strains, axis=(1, 2)) > STILL)[0]:
+            found.add(linkage.elements[int(number)].name)
+        for row, size in zip(tied, np.linalg.norm(left[equations:], axis=1), strict=True):
+            found |= set(assembly.tied[int(row)]) if size > STILL else set()
+    return tuple(joint.name for joint in assembly.mechanism.joints if joint.name in found)
 
 
 def idle_freedoms(assembly: Assembly, motion: Motion) -> int:

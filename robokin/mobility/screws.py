@@ -24,7 +24,8 @@ class Element:
     """A joint between two bodies whose motions are a subgroup.
 
     name: of the mechanism's joint; a, b: the bodies; screws: (f, 6) a basis of its twists at the reference,
-    lengths in the mechanism's size; labels: what each freedom is, for tables: `turn`, `slide`.
+    lengths in the mechanism's size; labels: what each freedom is, for tables: `turn`, `slide`; at: (3,) where it is,
+    or None.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Element:
     b: int
     screws: Array
     labels: tuple[str, ...]
+    at: Array | None = None
 
 
 def turn(at: Array, axis: Array) -> Array:
@@ -55,8 +57,10 @@ def across(axis: Array) -> tuple[Array, Array]:
 def has_geometry(joint: MechanismJoint) -> bool:
     """Whether enough is known of a joint to say how it moves."""
     kind, at, axes = joint.type, joint.at, joint.axes
-    if kind == "fixed":
-        return True
+    if kind == "fixed" or joint.gearing:
+        return True  # of wheels whose ratio is known the hinges say the rest
+    if kind == "belt":
+        return False
     if kind == "prismatic":
         return axes is not None
     if kind == "spherical":

@@ -15,15 +15,13 @@ from numpy.typing import NDArray
 
 from robokin.errors import InputError, did_you_mean, shown
 from robokin.mobility.assembly import Assembly, assembled, parts_of
-from robokin.mobility.linkage import Linkage, State
-from robokin.mobility.mobility import ASSEMBLED, kernel_at
-from robokin.mobility.screws import logarithm
+from robokin.mobility.columns import labels_of, of_pins, whole_rotations
+from robokin.mobility.linkage import RANK, Linkage, State
+from robokin.mobility.mobility import Motion, beginnings_of, kernel_at, motion_of, velocities_of
+from robokin.mobility.roles import still_freedoms
 from robokin.model import Mechanism
 
 Array = NDArray[np.float64]
-
-CONTACTS = ("gear", "cam", "rolling")
-"""Joints at a point that wanders on both links."""
 
 PACE = 0.04
 """Greatest joint motion of a step [rad | size]: some 160 to a turn."""
@@ -32,8 +30,15 @@ FARTHEST = 8.0 * np.pi
 """Where a joint that has gone as far [rad | size] without the mechanism coming back ends the curve: a crank that
 must turn twice for the rest to repeat has done so."""
 
+FARTHEST_GEARED = 40.0 * np.pi
+"""The same where gears or belts couple joints: wheels of 17 and 20 teeth are back after 20 turns of the first."""
+
 STOPS = 1e-3
 """A step of the joint that leads [rad | size] below which it stops or turns back there: a fortieth of a pace."""
+
+ASSEMBLED = 10.0 * RANK
+"""A state that lacks no more [size, rad] is assembled: a geometry whose errors `RANK` takes for none leaves some times
+as much at the end of a step; an exact one closes to 1e-15."""
 
 SINGULAR_PART = 1e-9
 """A direction whose part in the kernel is less leads nowhere."""
@@ -72,9 +77,17 @@ def trace(mechanism: Mechanism, count: int, drive: str | None = None) -> Trace:
     """
     _check_whole(mechanism)
     assembly = assembled(mechanism)
+    if assembly.wandering:
+        raise InputError(
+            f"{mechanism.name} has contacts (joint {', '.join(assembly.wandering[:6])}), whose points wander as the "
+            "description does not say, expected hinges and slides, and gears whose wheels turn on one carrier"
+        )
     linkage = assembly.linkage
     leader, held = _roles(assembly, drive)
-    direction = _beginning(assembly, leader, held)
+    motion = _motion(assembly)
+    still = still_freedoms(linkage, motion)
+    direction = _beginning(assembly, motion, leader, held, still)
+    held = held | still
     states, totals, closed = _follow(linkage, direction, held)
     if len(states) == 1:
         raise InputError(f"{mechanism.name} only trembles where it stands, expected a mechanism that moves")
@@ -84,8 +97,8 @@ def trace(mechanism: Mechanism, count: int, drive: str | None = None) -> Trace:
     else:
         picked, values = _by_leader(linkage, states, totals, count, held, closed, lead)
     names = [joint.name for joint in mechanism.joints]
-    labels = _labels(assembly, names)
-    values = _whole_rotations(assembly, picked, values)
+    labels = labels_of(assembly, names)
+    values = of_pins(assembly, whole_rotations(assembly, picked, values))
     turning = np.linalg.norm(linkage.screws[:, 3:], axis=1) > 0.5
     values = np.where(turning, values, values * assembly.size)
     poses = assembly.placed(np.stack([state.bodies[: len(mechanism.links)] for state in picked]))
@@ -93,13 +106,7 @@ def trace(mechanism: Mechanism, count: int, drive: str | None = None) -> Trace:
 
 
 def _check_whole(mechanism: Mechanism) -> None:
-    """Raise InputError for what cannot be followed from its geometry."""
-    contacts = [joint.name for joint in mechanism.joints if joint.type in CONTACTS]
-    if contacts:
-        raise InputError(
-            f"{mechanism.name} has contacts (joint {', '.join(contacts[:6])}), whose points wander as the description "
-            "does not say, expected hinges and slides only"
-        )
+    """Raise InputError for what is in several pieces."""
     parts = parts_of(mechanism)
     if len(parts) > 1:
         raise InputError(f"no joint leads from the ground to {parts[1][0]}, expected a mechanism of one piece")
@@ -123,10 +130,24 @@ def _roles(assembly: Assembly, drive: str | None) -> tuple[int, NDArray[np.bool_
     return leader, held
 
 
-def _beginning(assembly: Assembly, leader: int, held: NDArray[np.bool_]) -> Array:
+def _motion(assembly: Assembly) -> Motion:
+    """What the mechanism can do. Raises InputError where that is nothing, or not known."""
+    motion = motion_of(assembly.linkage, assembly.mechanism.order)
+    name = assembly.mechanism.name
+    if motion.instantaneous and not motion.finite:
+        if motion.undecided is not None:
+            raise InputError(f"it is undecided whether {name} moves, expected a mechanism that is known to move")
+        raise InputError(f"{name} only trembles where it stands, expected a mechanism that moves")
+    return motion
+
+
+def _beginning(
+    assembly: Assembly, motion: Motion, leader: int, held: NDArray[np.bool_], still: NDArray[np.bool_]
+) -> Array:
     """The direction (f,) in which the leader goes on most of all, the rest as little as may be."""
     linkage = assembly.linkage
-    kernel = _allowed(linkage, linkage.reference, held)
+    kernel = _held(beginnings_of(linkage, motion) if motion.finite else velocities_of(linkage, motion), held)
+    kernel = np.where(still[:, None], 0.0, kernel)
     rows = kernel[assembly.own == leader]
     name = assembly.mechanism.joints[leader].name
     if not kernel.shape[1]:
@@ -141,9 +162,14 @@ def _beginning(assembly: Assembly, leader: int, held: NDArray[np.bool_]) -> Arra
 
 def _allowed(linkage: Linkage, state: State, held: NDArray[np.bool_]) -> Array:
     """The kernel (f, k) of the loops with some joints held."""
+    return _held(kernel_at(linkage, state)[1], held)
+
+
+def _held(kernel: Array, held: NDArray[np.bool_]) -> Array:
+    """An orthonormal basis (f, k) of the velocities that leave some joints where they are."""
+    kernel = np.linalg.qr(kernel)[0] if kernel.shape[1] else kernel
     if not held.any():
-        return kernel_at(linkage, state)[1]
-    kernel = kernel_at(linkage, state)[1]
+        return kernel
     _, values, Vt = np.linalg.svd(kernel[held])
     return np.asarray(kernel @ Vt[int(np.sum(values > 1e-8)) :].T)
 
@@ -153,7 +179,8 @@ def _follow(linkage: Linkage, direction: Array, held: NDArray[np.bool_]) -> tupl
     state, total = linkage.reference, np.zeros(linkage.freedoms)
     states, totals = [state], [total]
     away = False
-    while np.max(np.abs(total)) < FARTHEST:
+    farthest = FARTHEST_GEARED if len(linkage.rows) else FARTHEST
+    while np.max(np.abs(total)) < farthest + PACE:
         after = _onward(linkage, state, direction, PACE, held)
         if after is None:
             return states, totals, False
@@ -262,27 +289,3 @@ def _by_leader(
         picked.append(state)
         values.append(total)
     return picked, np.array(values)
-
-
-def _labels(assembly: Assembly, names: list[str]) -> tuple[str, ...]:
-    """A name for each freedom: the joint's, with a number where it has several."""
-    labels = []
-    for number, name in enumerate(names):
-        count = int(np.sum(assembly.own == number))
-        labels += [name] if count == 1 else [f"{name}.{k + 1}" for k in range(count)]
-    return tuple(labels)
-
-
-def _whole_rotations(assembly: Assembly, states: list[State], values: Array) -> Array:
-    """The values with those of joints that turn about a point or move in a plane read off their displacements.
-
-    Turns about different axes do not add: such a joint's values are the parts of its displacement's logarithm.
-    """
-    linkage = assembly.linkage
-    for j, element in enumerate(linkage.elements):
-        if len(element.screws) < 3:
-            continue
-        logs = logarithm(np.stack([state.joints[j] for state in states]))
-        parts = np.linalg.lstsq(element.screws.T, logs.T, rcond=None)[0]
-        values[:, linkage.joint == j] = parts.T
-    return values

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from robokin.errors import InputError, did_you_mean
 from robokin.mobility.assembly import Assembly, assembled, missing_geometry, parts_of, space_fault
 from robokin.mobility.count import grubler
-from robokin.mobility.mobility import Motion, kernel_at, motion_of
+from robokin.mobility.mobility import STILL, Motion, along, motion_of, velocities_of
+from robokin.mobility.nearly import nearly_more
 from robokin.mobility.output import Output, kind_of, twist_basis
-from robokin.mobility.reasons import nearly_more, reason
-from robokin.mobility.roles import STILL, idle_freedoms, shares, strained_joints
+from robokin.mobility.reasons import reason
+from robokin.mobility.roles import idle_freedoms, moving_joints, strained_joints
 from robokin.model import Mechanism
 
 Array = NDArray[np.float64]
@@ -23,12 +24,16 @@ Array = NDArray[np.float64]
 class Mobility:
     """What is known of a mechanism's freedom.
 
-    count: Grübler's; motion: from geometry, None without. mobility: the finite one, None without geometry.
-    verdict: `right`, `exceptional`, `singular`, `shaky`, `nearly`, `disconnected` or `counted` (no geometry).
+    count: Grübler's; motion: from geometry, None without. mobility: the greatest dimension of the branches of
+    configurations through this one, None without geometry and where it is undecided. verdict: `right`, `exceptional`,
+    `singular`, `shaky`, `nearly`, `undecided`, `disconnected` or `counted` (no geometry). nearly: how many more motions
+    there would be if the dimensions were exact. branches: each with its dimension and the joints that move in it, and
+    `outputs` how the output moves in each, where there are several and an output.
     redundant: constraints that say nothing new, of λ a loop, and `strained` the joints that share them. idle: freedoms
     that do not move the output. dead: joints that never move. outputs: the links asked for. undriven: freedoms that
     are left when the actuated joints are held, `output_undriven` the output's; None without actuated joints.
-    missing: joints without geometry; note: the sentence, or None.
+    missing: joints without geometry; wandering: contacts that were judged by their velocities at this configuration
+    alone; note: the sentence, or None.
     """
 
     mechanism: Mechanism
@@ -47,12 +52,17 @@ class Mobility:
     output_undriven: int | None
     missing: tuple[str, ...]
     note: str | None
+    nearly: int = 0
+    branches: tuple[tuple[int, tuple[str, ...]], ...] = ()
+    wandering: tuple[str, ...] = ()
+    outputs: tuple[Output, ...] = ()
 
 
 def mobility_of(mechanism: Mechanism, between: tuple[str, str] | None = None, seed: int = 0) -> Mobility:
     """The mobility of a mechanism, counted and true; `between` two links (the moving one first) or its output.
 
-    Raises InputError for links that are not the mechanism's, and for axes that do not fit the mechanism's space.
+    Nothing hangs on the seed any more; it is taken as before. Raises InputError for links that are not the mechanism's,
+    and for axes that do not fit the mechanism's space.
     """
     fault = space_fault(mechanism)
     if fault:
@@ -76,8 +86,8 @@ def mobility_of(mechanism: Mechanism, between: tuple[str, str] | None = None, se
             mechanism, count, None, None, None, "counted", None, (), None, (), None, driven, None, None, missing, note
         )
     assembly = assembled(mechanism)
-    contacts = any(joint.type in ("gear", "cam", "rolling") for joint in mechanism.joints)
-    motion = motion_of(assembly.linkage, mechanism.order, seed, velocities_only=contacts)
+    wandering = frozenset(i for i, e in enumerate(assembly.linkage.elements) if e.name in assembly.wandering)
+    motion = motion_of(assembly.linkage, mechanism.order, wandering)
     return _judged(mechanism, count, assembly, motion, pair, driven)
 
 
@@ -96,19 +106,24 @@ def _judged(
     mechanism: Mechanism, count: int, assembly: Assembly, motion: Motion, pair: tuple[str, str] | None, driven: int
 ) -> Mobility:
     linkage, T = assembly.linkage, motion.tangent
-    verdict = _verdict(count, motion)
-    moves = shares(assembly, T)
-    dead = tuple(
-        joint.name for joint, size in zip(mechanism.joints, moves, strict=True) if size < STILL and joint.freedoms
-    )
+    nearly = sum(nearly_more(assembly, part) for part in motion.parts)
+    verdict = _verdict(count, motion, nearly)
+    branches = tuple((course.dimension, moving_joints(assembly, course.moving)) for course in motion.courses)
+    outputs = _outputs(assembly, motion, pair) if pair is not None and motion.count > 1 else ()
+    if motion.undecided is not None:
+        note = reason(mechanism, count, motion, verdict, (), nearly)
+        return Mobility(
+            mechanism, count, motion, assembly, None, verdict, None, (), None, (), None, driven, None, None, (), note,
+            nearly, branches, assembly.wandering,
+        )  # fmt: skip
+    moving = {name for _, names in branches for name in names}
+    dead = tuple(joint.name for joint in mechanism.joints if joint.name not in moving and joint.freedoms)
     bodies = linkage.body_twists(motion.state, T)
     output = idle = undriven = output_undriven = here = None
     if pair is not None:
-        twists = bodies[assembly.link(pair[0])] - bodies[assembly.link(pair[1])]
-        basis = twist_basis(twists)
-        output = Output(*pair, basis.shape[1], kind_of(basis))
-        idle = motion.finite - basis.shape[1]
-        here = _output_here(assembly, pair)
+        output = outputs[0] if outputs else _output(assembly, bodies, pair)
+        idle = motion.finite - output.freedoms
+        here = _output_here(assembly, motion, pair)
     else:
         idle = idle_freedoms(assembly, motion)
     if driven:
@@ -119,21 +134,36 @@ def _judged(
         if pair is not None:
             left = linkage.body_twists(motion.state, passive)
             output_undriven = twist_basis(left[assembly.link(pair[0])] - left[assembly.link(pair[1])]).shape[1]
-    strained = strained_joints(assembly, motion.state) if motion.redundant else ()
-    note = reason(mechanism, count, motion, verdict, strained)
+    strained = strained_joints(assembly, motion) if motion.redundant else ()
+    note = reason(mechanism, count, motion, verdict, strained, nearly)
     if output is not None and here is not None and here < output.freedoms:
         lost = f"singular pose: {output.link} has {here} freedoms here, {output.freedoms} away from it"
         verdict, note = "singular" if verdict == "right" else verdict, lost if note is None else f"{note}; {lost}"
     return Mobility(
         mechanism, count, motion, assembly, motion.finite, verdict, motion.redundant, strained, idle, dead, output,
-        driven, undriven, output_undriven, (), note,
+        driven, undriven, output_undriven, (), note, nearly, branches, assembly.wandering, outputs,
     )  # fmt: skip
 
 
-def _output_here(assembly: Assembly, pair: tuple[str, str]) -> int:
+def _output(assembly: Assembly, bodies: Array, pair: tuple[str, str]) -> Output:
+    """How one link moves against another where the bodies have twists (n, 6, d)."""
+    basis = twist_basis(bodies[assembly.link(pair[0])] - bodies[assembly.link(pair[1])])
+    return Output(*pair, basis.shape[1], kind_of(basis))
+
+
+def _outputs(assembly: Assembly, motion: Motion, pair: tuple[str, str]) -> tuple[Output, ...]:
+    """How one link moves against another in each branch."""
+    found = []
+    for course in motion.courses:
+        state, T = along(assembly.linkage, motion.parts, course.branches)
+        found.append(_output(assembly, assembly.linkage.body_twists(state, T), pair))
+    return tuple(found)
+
+
+def _output_here(assembly: Assembly, motion: Motion, pair: tuple[str, str]) -> int:
     """The output's freedoms at the given configuration."""
     linkage = assembly.linkage
-    bodies = linkage.body_twists(linkage.reference, kernel_at(linkage, linkage.reference)[1])
+    bodies = linkage.body_twists(linkage.reference, velocities_of(linkage, motion))
     return int(twist_basis(bodies[assembly.link(pair[0])] - bodies[assembly.link(pair[1])]).shape[1])
 
 
@@ -150,9 +180,13 @@ def _between(mechanism: Mechanism, between: tuple[str, str] | None) -> tuple[str
     return between
 
 
-def _verdict(count: int, motion: Motion) -> str:
-    if nearly_more(motion):
+def _verdict(count: int, motion: Motion, nearly: int) -> str:
+    if motion.undecided is not None:
+        return "undecided"
+    if nearly:
         return "nearly"
+    if motion.count > 1:
+        return "singular"
     if motion.finite < motion.generic:
         return "shaky"
     if motion.instantaneous > motion.generic:

@@ -1,11 +1,8 @@
-"""Wheeled bases: degree of mobility, of steerability, of manoeuvrability; holonomic or not.
+"""Wheeled bases: degree of mobility, of steerability, of manoeuvrability; what motors command; holonomic or not.
 
-Statement. A base on a plane has the twist (v_x, v_y, ω) in its own frame. A standard wheel at (x, y) that rolls in the
-direction φ cannot slip sideways,
-
-    -sin φ (v_x - ω y) + cos φ (v_y + ω x) = 0;
-
-fixed wheels give rows C_f, steered ones rows C_s(β); castor and Swedish wheels give none. Then
+Statement. A base on a plane has the twist (v_x, v_y, ω) in its own frame. A standard wheel cannot slip sideways, which
+is a row on the twist; fixed wheels give rows C_f, steered ones rows C_s(β); castors, Swedish wheels and balls give
+none. Then
 
     degree of mobility        δ_m = 3 - rank [C_f; C_s(β)],
     degree of steerability    δ_s = rank of the change of β with the centre of rotation: what can be steered freely,
@@ -15,9 +12,10 @@ The ranks are those at steering angles that share a centre of rotation, as a ste
 them: at angles taken at random a car could not move at all. The centre lies on the axles of all fixed wheels; where
 those leave none, or only a point, nothing is left to steer.
 
-Holonomic is a base that can at once move in all the directions in which it can get anywhere: δ_m equals the dimension
-of what Lie brackets of its motions, at all steering angles, span. The lecture's ratio is that of controllable freedoms
-(here δ_m) to all of them (3 in the plane).
+These are what the wheels allow. What the motors command of it is the rank of their rows on the twists that the
+constraints leave: `wheel_drives`. Holonomic is a base that can at once be driven in all the directions in which it can
+get anywhere: what is controllable equals the dimension of what Lie brackets of its motions, at all steering angles,
+span. The lecture's ratio is that of controllable freedoms to all of them (3 in the plane).
 
 Source: G. Campion, G. Bastin, B. d'Andréa-Novel, "Structural properties and classification of kinematic and dynamic
 models of wheeled mobile robots", IEEE Trans. Robotics and Automation 12(1), 1996.
@@ -30,12 +28,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.mobility.wheel_drives import Commands, commands_of
+from robokin.mobility.wheel_rows import RANK, Frame, kernel_of, rank_of, sliding_row
 from robokin.model import Wheel, WheeledBase
 
 Array = NDArray[np.float64]
-
-RANK = 1e-9
-"""Singular values below this part of the greatest are zero: tables of wheels are exact or given to three digits."""
 
 NO_TURN = np.array([[0.0, 0.0, 1.0]])
 """The constraint of wheels that stay parallel: the base does not turn."""
@@ -48,18 +45,29 @@ SAMPLES = 12
 class Manoeuvrability:
     """δ_m, δ_s and their sum; reachable: the dimension of what the base can get to (3: every place and heading).
 
-    note: what is special, or None.
+    commands: what its motors command of them; note: what is special, or None.
     """
 
     mobility: int
     steerability: int
     reachable: int
+    commands: Commands
     note: str | None
 
     @property
     def manoeuvrability(self) -> int:
         """δ_M = δ_m + δ_s."""
         return self.mobility + self.steerability
+
+    @property
+    def controllable(self) -> int:
+        """How many of the δ_m freedoms the motors command."""
+        return self.commands.controllable
+
+    @property
+    def uncontrolled(self) -> int:
+        """How many of the δ_m freedoms no motor commands."""
+        return self.mobility - self.commands.controllable
 
     @property
     def total(self) -> int:
@@ -69,32 +77,34 @@ class Manoeuvrability:
     @property
     def ratio(self) -> float:
         """Controllable to total freedoms, as the lecture has it."""
-        return self.mobility / self.total
+        return self.controllable / self.total
 
     @property
     def holonomic(self) -> bool:
-        """Whether the base can at once move in every direction in which it can get anywhere."""
-        return self.mobility == self.reachable
+        """Whether the base can at once be driven in every direction in which it can get anywhere."""
+        return self.controllable == self.reachable
 
 
 def manoeuvrability_of(base: WheeledBase) -> Manoeuvrability:
-    """What the wheels let a base do."""
-    size = max(float(np.hypot(wheel.x, wheel.y)) for wheel in base.wheels) or 1.0
-    fixed = np.array([_row(wheel, wheel.angle, size) for wheel in base.wheels if wheel.type == "fixed"]).reshape(-1, 3)
+    """What the wheels let a base do, and what its motors command of that."""
+    frame = Frame.of(base.wheels)
+    rows = [sliding_row(frame, wheel, wheel.angle) for wheel in base.wheels if wheel.type == "fixed"]
+    fixed = np.array(rows).reshape(-1, 3)
     steered = [wheel for wheel in base.wheels if wheel.type == "steered"]
-    bound = _rank(fixed)
+    bound = rank_of(fixed)
     shared = np.concatenate([fixed, NO_TURN]) if base.parallel and steered else fixed
-    free = _kernel(shared)
+    free = kernel_of(shared)
     twists = _twists_of(free, bool(steered))
-    mobility = 3
-    moves = []
+    situations = []
     for twist in twists:
-        rows = [fixed, *(_row(wheel, _heading(wheel, twist, size), size)[None] for wheel in steered)]
-        C = np.concatenate(rows)
-        mobility = min(mobility, 3 - _rank(C))
-        moves.append(_kernel(C))
-    steerability = max((_rank(_steering(steered, twist, free, size)) for twist in twists), default=0)
-    reachable = _closure(np.concatenate(moves, axis=1))
+        C = [fixed, *(sliding_row(frame, wheel, frame.heading(wheel, twist))[None] for wheel in steered)]
+        situations.append((twist, kernel_of(np.concatenate(C))))
+    mobility = min(N.shape[1] for _, N in situations)
+    situations = [(twist, N) for twist, N in situations if N.shape[1] == mobility]
+    steerings = [_steering(steered, twist, free, frame) for twist in twists]
+    steering = steerings[int(np.argmax([rank_of(rows) for rows in steerings]))]
+    steerability = rank_of(steering)
+    reachable = _closure(np.concatenate([N for _, N in situations], axis=1))
     note = None
     if mobility == 0:
         note = "the axles of the wheels have no common point: the base cannot move without slipping"
@@ -109,20 +119,8 @@ def manoeuvrability_of(base: WheeledBase) -> Manoeuvrability:
             note = "the steered wheels can only stay as they are: the base cannot move when they are turned"
         if base.parallel:
             note = "the steered wheels stay parallel: the base never turns"
-    return Manoeuvrability(mobility, steerability, reachable, note)
-
-
-def _row(wheel: Wheel, angle: float, size: float) -> Array:
-    """The wheel's constraint on (v_x, v_y, ω), lengths in `size`."""
-    s, c = np.sin(angle), np.cos(angle)
-    return np.array([-s, c, (s * wheel.y + c * wheel.x) / size])
-
-
-def _heading(wheel: Wheel, twist: Array, size: float) -> float:
-    """The angle at which a steered wheel rolls along when the base moves with a twist (v_x, v_y, ω size)."""
-    v_x = twist[0] - twist[2] * wheel.y / size
-    v_y = twist[1] + twist[2] * wheel.x / size
-    return float(np.arctan2(v_y, v_x)) if np.hypot(v_x, v_y) > RANK else wheel.angle
+    commands = commands_of(base, frame, situations, steering, free)
+    return Manoeuvrability(mobility, steerability, reachable, commands, note)
 
 
 def _twists_of(free: Array, steers: bool) -> list[Array]:
@@ -135,40 +133,25 @@ def _twists_of(free: Array, steers: bool) -> list[Array]:
     return [free @ rng.normal(size=free.shape[1]) for _ in range(SAMPLES)]
 
 
-def _steering(steered: list[Wheel], twist: Array, free: Array, size: float) -> Array:
+def _steering(steered: list[Wheel], twist: Array, free: Array, frame: Frame) -> Array:
     """How the angles of steered wheels (s, k) change as the twist does within those that are free (3, k)."""
     rows = []
     for wheel in steered:
-        x, y = np.array([1.0, 0.0, -wheel.y / size]), np.array([0.0, 1.0, wheel.x / size])
-        v_x, v_y = x @ twist, y @ twist
+        x, y = frame.along(wheel, 0.0), frame.along(wheel, 0.5 * np.pi)
+        v_x, v_y = float(x @ twist), float(y @ twist)
         rows.append((v_x * y - v_y * x) / max(v_x * v_x + v_y * v_y, RANK))
     return np.array(rows).reshape(-1, 3) @ free
-
-
-def _rank(C: Array) -> int:
-    if not len(C):
-        return 0
-    values = np.linalg.svd(C, compute_uv=False)
-    return int(np.sum(values > RANK * max(values[0], RANK)))
-
-
-def _kernel(C: Array) -> Array:
-    """The twists (3, k) that the constraints (r, 3) allow."""
-    if not len(C):
-        return np.eye(3)
-    _, _, Vt = np.linalg.svd(C)
-    return np.asarray(Vt[_rank(C) :].T)
 
 
 def _closure(twists: Array) -> int:
     """The dimension of the Lie algebra that twists (3, k) of the plane's motions make."""
     while True:
-        before = _rank(twists.T)
+        before = rank_of(twists.T)
         brackets = np.array([_bracket(a, b) for a in twists.T for b in twists.T]).reshape(-1, 3)
         U, values, _ = np.linalg.svd(np.concatenate([twists, brackets.T], axis=1))
         if not len(values):
             return 0
-        after = int(np.sum(values > RANK * max(values[0], RANK)))
+        after = int(np.sum(values > RANK * max(values[0], 1.0)))
         twists = U[:, :after]
         if after == before:
             return after

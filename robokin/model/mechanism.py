@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.model.blueprint import AssemblyMode
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -20,13 +21,31 @@ LAMBDA: Mapping[str, int] = MappingProxyType({"planar": 3, "spherical": 3, "spat
 
 
 @dataclass(frozen=True, eq=False)
+class Rounding:
+    """How far a joint's numbers may be off: a unit in the last place that was written, 0 for what is exact.
+
+    at (3,) [m], axes (k, 3), pitch [m/rad].
+    """
+
+    at: Array
+    axes: Array
+    pitch: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
 class MechanismJoint:
     """A joint between two or more links.
 
     `freedoms` is f, what it lets two links do against each other; a joint of m links counts as m - 1
     such joints. `at` (3,) [m] is a point on it and `axes` (k, 3) are its unit directions in the
     assembled configuration (two for a universal joint, the normal for a planar one); None where the
-    description gives no geometry. `pitch` [m/rad] is a helical joint's advance.
+    description gives no geometry. `pitch` [m/rad] is a helical joint's advance. `rounding` says how far these may be
+    off, as they were written; None where nobody wrote them.
+
+    `gearing` holds, for gears and belts whose ratio is known, a number for each link: the first times the first link's
+    turn is the second times the second's, and so on, all turns measured from the link that carries the wheels
+    (`carrier`, "" where only one can) and about `axes` (2, 3), or about the hinges' own axes. `meshes` says that they
+    are numbers of teeth, whose senses follow from where the wheels touch.
     """
 
     name: str
@@ -37,6 +56,10 @@ class MechanismJoint:
     axes: Array | None = None
     pitch: float = 0.0
     actuated: bool = False
+    gearing: tuple[float, ...] = ()
+    meshes: bool = False
+    carrier: str = ""
+    rounding: Rounding | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -56,7 +79,10 @@ class MechanismJoint:
 class Mechanism:
     """Links, the joints between them, the link that stands still, and the one that the others serve, if named.
 
-    `expected` is what the source says: `grubler`, `mobility`, `overconstraints`, `output`, `idle`.
+    `ground_named` says whether the ground is named as such, or just the first link. `expected` is what the source says:
+    `grubler`, `mobility`, `overconstraints`, `output`, `idle`. `modes` are the ways to put together a mechanism whose
+    description gives lengths, `mode` the number, from 1, of the one that its joints stand in (0 where their places are
+    given), and `modes_complete` says that there can be no other.
     """
 
     name: str
@@ -71,6 +97,10 @@ class Mechanism:
     units: Units = field(default_factory=Units)
     parameters: Mapping[str, float] = field(default_factory=dict)
     expected: Mapping[str, int] = field(default_factory=dict)
+    ground_named: bool = True
+    modes: tuple[AssemblyMode, ...] = ()
+    mode: int = 0
+    modes_complete: bool = True
 
     def __post_init__(self) -> None:
         """Make the mappings read-only."""

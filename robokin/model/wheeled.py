@@ -13,8 +13,9 @@ from robokin.units import Units
 class Wheel:
     """A wheel of a base, in the base's frame.
 
-    type: `fixed`, `steered`, `castor` or `swedish`. x, y [m]: where it touches the ground (a castor: its swivel).
-    angle [rad]: the direction in which it rolls, from the x axis, at a steered wheel that of its zero. radius [m].
+    type: `fixed`, `steered`, `castor`, `swedish` or `ball`. x, y [m]: where it touches the ground (a castor: its
+    swivel). angle [rad]: the direction in which it rolls, from the x axis, at a steered wheel that of its zero; of a
+    ball, the direction in which its motor rolls it. radius [m].
     offset [m]: a castor's, from swivel to wheel. roller [rad]: a Swedish wheel's, from the direction in which the wheel
     rolls to the direction in which its rollers let it slip; 90° for an omni wheel, 45° for a mecanum wheel. driven:
     whether a motor turns the wheel; turned: whether a motor steers it.

@@ -80,7 +80,7 @@ def arm_faces(
             drawn.add(key)
         paint = colour(COLOURS[bar.role]) if ghost is None else colour(ghost, PALE[bar.role == "link"])
         across = frames[bar.bodies[0], :3, :3] @ bar.across
-        faces = _prism(a, b, across, (bar.width, bar.width), bar.sides, eye, paint)
+        faces = prism_faces(a, b, across, (bar.width, bar.width), bar.sides, eye, paint)
         if bar.role in ("revolute", "prismatic", "base"):
             yield from faces
         else:
@@ -102,18 +102,18 @@ def frame_faces(T: Array, length: float, eye: Array) -> Iterator[Face]:
     for k, name in enumerate("xyz"):
         axis, aside, paint = T[:3, k], T[:3, (k + 1) % 3], colour(COLOURS[name])
         neck, tip = (T[:3, 3] + part * AXIS * length * axis for part in (0.78, 1.0))
-        yield from _prism(T[:3, 3], neck, aside, (SHAFT * length, SHAFT * length), 8, eye, paint)
-        yield from _prism(neck, tip, aside, (2.8 * SHAFT * length, 0.0), 10, eye, paint)
+        yield from prism_faces(T[:3, 3], neck, aside, (SHAFT * length, SHAFT * length), 8, eye, paint)
+        yield from prism_faces(neck, tip, aside, (2.8 * SHAFT * length, 0.0), 10, eye, paint)
 
 
 def cross_faces(p: Array, length: float, eye: Array) -> Iterator[Face]:
     """Three short bars that cross at a place p (3,) [m] that was asked for with any orientation."""
     for k, axis in enumerate(np.eye(3)):
         a, b = (p + end * 0.5 * AXIS * length * axis for end in (-1.0, 1.0))
-        yield from _prism(a, b, np.roll(np.eye(3)[k], 1), (SHAFT * length, SHAFT * length), 8, eye, colour(CROSS))
+        yield from prism_faces(a, b, np.roll(np.eye(3)[k], 1), (SHAFT * length, SHAFT * length), 8, eye, colour(CROSS))
 
 
-def _prism(
+def prism_faces(
     a: Array, b: Array, across: Array, widths: tuple[float, float], sides: int, eye: Array, paint: Array
 ) -> Iterator[Face]:
     """The faces of a prism or a pyramid from a to b that the eye sees."""

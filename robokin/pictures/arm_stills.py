@@ -12,6 +12,7 @@ from robokin.pictures.arm import body_frames, line_of
 from robokin.pictures.arm_faces import GHOSTS, Face, arm_faces, colour, cross_faces, frame_faces, ordered
 from robokin.pictures.arm_scene import Scene, axis_names, eye_axes
 from robokin.pictures.stills import drawing, written
+from robokin.units import Units
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -80,14 +81,14 @@ def _draw(figure: Figure, scene: Scene) -> None:
         _plane(axes, scene, [*layers[0], *layers[1]], eye, names, (low, high))
     else:
         axes = figure.add_axes(room, projection="3d", computed_zorder=False)
-        _solid(axes, scene, layers, (low, high))
+        draw_solid(axes, scene.units, scene.view, layers, (low, high))
     marks = _names(scene)
     # Points of paper in a metre: exact in a plane, near enough in space.
     points = 72.0 * SIDE / float(np.max(np.ptp(_box(low, high) @ eye[:2].T, axis=0)))
-    asides = _asides([eye[:2] @ place * points for place, _, _ in marks], [text for _, text, _ in marks])
+    asides = spread_labels([eye[:2] @ place * points for place, _, _ in marks], [text for _, text, _ in marks])
     for (place, text, paint), aside in zip(marks, asides, strict=True):
         at = (eye @ place)[:2] if names else place
-        _label(axes, at / scene.units.metres, text, paint, aside)
+        label(axes, at / scene.units.metres, text, paint, aside)
     if keyed:
         _key(figure, scene, (1.0 - (key - 0.1) / width, 1.0 - head / height), height)
 
@@ -142,14 +143,17 @@ def _plane(
     axes.add_collection(PolyCollection(corners, facecolors=paints, edgecolors=paints, linewidths=0.4, zorder=3))
 
 
-def _solid(axes: Any, scene: Scene, layers: Sequence[list[Face]], box: tuple[Array, Array]) -> None:
+def draw_solid(
+    axes: Any, units: Units, view: tuple[float, float], layers: Sequence[list[Face]], box: tuple[Array, Array]
+) -> None:
+    """Faces (farthest first) in space, layer upon layer, with axes; view: azimuth and elevation [°] of the eye."""
     from matplotlib.ticker import MaxNLocator
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
-    scale, unit = 1.0 / scene.units.metres, scene.units.length
+    scale, unit = 1.0 / units.metres, units.length
     middle, size = 0.5 * (box[0] + box[1]) * scale, (box[1] - box[0]) * scale
     size = np.maximum(size, 0.3 * np.max(size))
-    azimuth, elevation = scene.view
+    azimuth, elevation = view
     axes.set_proj_type("ortho")
     axes.set(
         xlim=(middle[0] - size[0] / 2, middle[0] + size[0] / 2),
@@ -218,7 +222,7 @@ def _tag(scene: Scene, number: int) -> str:
     return str(1 + sum(bool(posture.label) for posture in scene.postures[:number]))
 
 
-def _label(axes: Any, at: Array, text: str, paint: str, aside: tuple[int, int]) -> None:
+def label(axes: Any, at: Array, text: str, paint: str, aside: tuple[int, int]) -> None:
     """Letters on white beside a place, in the plane or in space; aside: where, in points."""
     from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
 
@@ -236,7 +240,7 @@ def _label(axes: Any, at: Array, text: str, paint: str, aside: tuple[int, int]) 
                   fontweight="bold", annotation_clip=False, **look)  # fmt: skip
 
 
-def _asides(places: Sequence[Array], texts: Sequence[str]) -> list[tuple[int, int]]:
+def spread_labels(places: Sequence[Array], texts: Sequence[str]) -> list[tuple[int, int]]:
     """Where letters stand beside their places (2,) in points, so that they do not cover one another."""
     boxes: list[tuple[float, float, float, float]] = []
     asides = []

@@ -43,29 +43,30 @@ def arm_text(scene: Scene) -> str:
     for line in places:
         for a, b in pairwise(line):
             count = int(np.ceil(np.linalg.norm(b - a) / (0.5 * step))) + 1
-            _set(mask, grid, step, a + (b - a) * np.linspace(0.0, 1.0, count)[:, None])
+            mark_dots(mask, grid, step, a + (b - a) * np.linspace(0.0, 1.0, count)[:, None])
     turn = np.linspace(0.0, 2.0 * np.pi, 24)
     ring = BLOB * step * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     for poses in frames:
         for pose in poses[1:]:
-            _set(mask, grid, step, eye @ pose[:3, 3] + ring)
+            mark_dots(mask, grid, step, eye @ pose[:3, 3] + ring)
     page = braille(mask)
     if scene.frames:
         named = [(eye @ (frames[0][mark.body] @ mark.T)[:3, 3], mark.name) for mark in scene.arm.marks[1:-1]]
-        page = _named(page, grid, step, named)
+        page = named_lines(page, grid, step, named)
     corner = (np.array([grid[0, 0, 0], grid[-1, 0, 1]]) - 0.5 * step) * scale
     labels = f"{names[0]} [{scene.units.length}]", f"{names[1]} [{scene.units.length}]"
     return framed(page, corner, (2 * step * scale, 4 * step * scale), labels)
 
 
-def _set(mask: Mask, grid: Array, step: float, points: Array) -> None:
+def mark_dots(mask: Mask, grid: Array, step: float, points: Array) -> None:
+    """Set the dots of a grid, `step` apart, that points (m, 2) fall on."""
     column = np.round((points[:, 0] - grid[0, 0, 0]) / step).astype(int)
     row = np.round((grid[0, 0, 1] - points[:, 1]) / step).astype(int)
     inside = (column >= 0) & (column < mask.shape[1]) & (row >= 0) & (row < mask.shape[0])
     mask[row[inside], column[inside]] = True
 
 
-def _named(lines: list[str], grid: Array, step: float, names: list[tuple[Array, str]]) -> list[str]:
+def named_lines(lines: list[str], grid: Array, step: float, names: list[tuple[Array, str]]) -> list[str]:
     """The lines with names a character to the right of their places, one beside the other where they meet."""
     page = [list(line) for line in lines]
     taken: set[tuple[int, int]] = set()

@@ -50,7 +50,7 @@ BEND = 0.5
 
 def solid_views(space: Space, say: Callable[[float], str], size: float, section: bool = True) -> list[View]:
     """The planes that show a solid: the section that is turned about the first axis, and a level slice where the set
-    is widest; an upright slice where there is no such section, or `section` is False.
+    is widest; an upright slice where there is no such section, or `section` is False. Titles say why a slice is there.
 
     `say` writes a length [m] in its unit; slices are at whole multiples of size [m], or finer ones in a small set.
     """
@@ -58,14 +58,19 @@ def solid_views(space: Space, say: Callable[[float], str], size: float, section:
     turned = section_view(space)
     middle = 0.5 * (p.min(axis=0) + p.max(axis=0))
     level, aside = float(middle[2]), float(middle[1])
+    why, why_aside = "halfway up", "halfway across"
     if turned is not None and turned.labels[1] == "z":
         r, z = turned.places(p).T
         level, aside = float(z[np.argmax(r)]), float(turned.origin[1])
+        why, why_aside = "where the set is widest", "through the first joint's axis"
     # Round to the unit where that is fine enough.
     size = min(size, 10.0 ** np.floor(np.log10(0.01 * float(np.max(np.ptp(p, axis=0))))))
     level, aside = (round(value / size) * size + 0.0 for value in (level, aside))
-    side = turned if turned is not None and section else slice_view(space, "y", aside, say(aside))
-    return [side, slice_view(space, "z", level, say(level))]
+    upright, flat = slice_view(space, "y", aside, say(aside)), slice_view(space, "z", level, say(level))
+    upright, flat = (
+        replace(view, title=f"{view.title}, {words}") for view, words in ((upright, why_aside), (flat, why))
+    )
+    return [turned if turned is not None and section else upright, flat]
 
 
 def panel(
@@ -168,6 +173,8 @@ def cloud(space: Space, seed: int = 0, arms: Sequence[Array] = (), cut: bool = F
     """Points all over the reachable set, evenly: one to a cell; `cut` takes out the quarter in front."""
     p = sampled(space, 4 * SHADOW, seed)
     low, size = p.min(axis=0), np.ptp(p, axis=0)
+    if not space.dimension:
+        return Cloud(p[:1], p[:1, 2], "", list(arms))
     # Cells so small that there are about as many as points are wanted.
     step = float(np.max(size)) / 12.0
     keep = np.arange(len(p))

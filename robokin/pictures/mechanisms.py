@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.errors import InputError
+from robokin.mobility.gear_wheels import belt_lines, wheels_of
 from robokin.mobility.trace import Trace
 from robokin.model import Mechanism, MechanismJoint
 from robokin.pictures.stills import FREE, RESOLUTION, STYLE
@@ -105,7 +106,11 @@ def _loop(path: Array, closed: bool) -> Array:
 
 def _pins(mechanism: Mechanism, link: str) -> Array:
     """Where the joints of a link are (k, 2) [m], each place once."""
-    points = [joint.at[:2] for joint in mechanism.joints if link in joint.links and joint.at is not None]
+    points = [
+        joint.at[:2]
+        for joint in mechanism.joints
+        if link in joint.links and joint.at is not None and not joint.gearing and joint.type not in ("gear", "rolling")
+    ]
     return np.unique(np.array(points).reshape(-1, 2).round(12), axis=0)
 
 
@@ -115,7 +120,7 @@ def _ways(mechanism: Mechanism, trace: Trace | None) -> list[Array]:
         return []
     ways = []
     for joint in mechanism.joints:
-        if joint.at is None or mechanism.ground in joint.links or joint.type == "prismatic":
+        if joint.at is None or mechanism.ground in joint.links or joint.type == "prismatic" or joint.gearing:
             continue
         T = trace.poses[:, trace.links.index(joint.links[0])]
         ways.append(T[:, :2, :3] @ joint.at + T[:, :2, 3])
@@ -124,6 +129,8 @@ def _ways(mechanism: Mechanism, trace: Trace | None) -> list[Array]:
 
 def _bounds(mechanism: Mechanism, curves: list[Array], scale: float) -> tuple[Array, Array]:
     points = [joint.at[None, :2] * scale for joint in mechanism.joints if joint.at is not None]
+    for wheel in wheels_of(mechanism):
+        points += [(wheel.centre[None, :2] + sign * wheel.radius) * scale for sign in (-1.0, 1.0)]
     everything = np.concatenate([*points, *curves]) if points else np.array([[-1.0, -1.0], [1.0, 1.0]])
     low, high = everything.min(axis=0), everything.max(axis=0)
     room = MARGIN * (float(np.max(high - low)) or 1.0) + BLOCK * (float(np.max(high - low)) or 1.0)
@@ -136,19 +143,39 @@ def _draw(axes: Axes, mechanism: Mechanism, scale: float, size: float) -> None:
     colours = {link: LINKS[i % len(LINKS)] for i, link in enumerate(moving)} | {mechanism.ground: GROUND}
     for link in moving:
         _link(axes, _pins(mechanism, link) * scale, colours[link], link)
+    _wheels(axes, mechanism, scale, colours)
     for joint in mechanism.joints:
-        if joint.at is None:
+        if joint.at is None or joint.gearing:
             continue
         place = joint.at[:2] * scale
         if joint.type == "prismatic":
             _slide(axes, mechanism, joint, place, colours, size)
             continue
-        if mechanism.ground in joint.links:
-            _support(axes, place, size)
         contact = joint.type in ("gear", "cam", "rolling")
+        if mechanism.ground in joint.links and not contact:
+            _support(axes, place, size)
         axes.plot(*place, "D" if contact else "o", markersize=4.5 if contact else 7.0, markerfacecolor="white",
                   markeredgecolor="#222222", markeredgewidth=1.3, zorder=5)  # fmt: skip
         _name(axes, joint.name, place, (5, 5))
+
+
+def _wheels(axes: Axes, mechanism: Mechanism, scale: float, colours: dict[str, str]) -> None:
+    """The wheels of gears and belts as circles, and the straight parts of belts."""
+    from matplotlib.colors import to_rgb
+    from matplotlib.patches import Circle
+
+    wheels = wheels_of(mechanism)
+    for wheel in wheels:
+        told = axes.get_legend_handles_labels()[1]
+        label = wheel.link if wheel.link not in told and wheel.link != mechanism.ground else None
+        face = "none" if wheel.ring else (*to_rgb(colours[wheel.link]), 0.15)
+        axes.add_patch(Circle((wheel.centre[0] * scale, wheel.centre[1] * scale), wheel.radius * scale, facecolor=face,
+                              edgecolor=colours[wheel.link], linewidth=2.0, zorder=2, label=label))  # fmt: skip
+    for joint in mechanism.joints:
+        mine = [wheel for wheel in wheels if wheel.joint == joint.name]
+        if joint.type == "belt" and mine:
+            for line in belt_lines(mine):
+                axes.plot(*(line[:, :2] * scale).T, color="#222222", linewidth=1.6, zorder=3)
 
 
 def _link(axes: Axes, pins: Array, colour: str, name: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import json
+import re
 from importlib import resources
 from typing import Any
 
@@ -17,6 +18,9 @@ Array = NDArray[np.float64]
 
 DIGITS = 5
 """Significant digits of a place in a plane picture: far finer than a screen."""
+
+INCLUDE = re.compile(r"@INCLUDE ([a-z]+\.js)@")
+"""Where a page takes in a script that it shares with others."""
 
 STEPS = 65535
 """Steps along a side of the cloud's box."""
@@ -40,7 +44,9 @@ def filled(template: str, title: str, data: dict[str, Any]) -> bytes:
     """A page of this folder with its title and its data in their places."""
     # Inside a script element nothing may look like its end.
     text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
-    page = resources.files("robokin.pictures").joinpath(template).read_text(encoding="utf-8")
+    folder = resources.files("robokin.pictures")
+    page = folder.joinpath(template).read_text(encoding="utf-8")
+    page = INCLUDE.sub(lambda found: folder.joinpath(found[1]).read_text(encoding="utf-8").rstrip("\n"), page)
     before, _, rest = page.partition("@TITLE@")
     middle, _, after = rest.partition("@DATA@")
     return (before + html.escape(title) + middle + text + after).encode(errors="backslashreplace")
@@ -73,7 +79,7 @@ def _cloud(cloud: Cloud, scale: float, unit: str) -> dict[str, Any]:
     corners = np.concatenate([cloud.points, *cloud.arms])
     low, high = corners.min(axis=0), corners.max(axis=0)
     # A flat cloud's box is as thin as a line, but no thinner.
-    thick = np.maximum(high - low, 1e-6 * np.max(high - low))
+    thick = np.maximum(high - low, 1e-6 * np.max(high - low) or 1.0)
     high = low + thick
     least, most = float(cloud.values.min()), float(cloud.values.max())
     values = (cloud.values - least) / max(most - least, 1e-300)

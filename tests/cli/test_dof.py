@@ -47,7 +47,9 @@ LINKS = "ground, crank, coupler, rocker"
         ("4", "4R", "planar", 4, 1), ("4", "3R,1P", "planar", 4, 1), ("4", "RRRP", "planar", 4, 1),
         ("4", "rrrp", "planar", 4, 1), ("4", "3 revolute, 1 prismatic", "planar", 4, 1), ("4", "4R", "spatial", 4, -2),
         ("4", "4R", "spherical", 4, 1), ("4", "2R,2S", "spatial", 8, 2), ("4", "R,R,S,S", "spatial", 8, 2),
-        ("3", "2R,G", "planar", 4, 1), ("3", "2R,G", "spatial", 7, 1), ("2", "hinge", "planar", 1, 1),
+        ("3", "2R,1G", "spherical", 4, 1), ("3", "2R,bevel", "spherical", 4, 1), ("3", "2R,belt", "planar", 4, 1),
+        ("4", "3R,2 gears", "spherical", 7, 1), ("3", "2R,G", "planar", 4, 1),
+        ("3", "2R,G", "spatial", 7, 1), ("2", "hinge", "planar", 1, 1),
         ("5", "4R 2G", "planar", 8, 2), ("4", "3 pins, slider", "planar", 4, 1), ("4", "2R+2S", "spatial", 8, 2),
         ("11", "3R,12S", "spatial", 39, 9), ("2", "1F", "spatial", 0, 0), ("2", "1E", "planar", 3, 3),
         ("2", "H", "spatial", 1, 1), ("2", "1C", "spatial", 2, 2),
@@ -272,6 +274,70 @@ def test_the_seed_is_said_and_changes_nothing(call):
     refused(call("dof", "bennett", "--seed", "x"), "--seed: found 'x'")
 
 
+def test_ways_to_put_a_mechanism_together(call, tmp_path):
+    record = call("dof", "four-bar-by-lengths", "--json").json
+    assert (record["mode"], record["modes_complete"], len(record["modes"])) == (1, True, 2)
+    assert record["modes"][0]["links"]["crank"] == pytest.approx(60)
+    assert record["modes"][1]["joints"]["C"] == pytest.approx([70.32956032, -74.29444804])
+    text = call("dof", "four-bar-by-lengths", "--mode", "2").text
+    assert "133.881  72.4712" in text
+    assert next(line for line in text.splitlines() if "this one" in line).strip().startswith("2")
+    rows = call("dof", "four-bar-by-lengths", "--mode", "2", "--trace", "4", "-f", "csv").numbers
+    assert rows.shape == (4, 13)
+    for name in ("a.html", "a.png"):
+        if name.endswith("png"):
+            pytest.importorskip("matplotlib")
+        answer = call("dof", "stephenson-by-lengths", "--mode", "6", "--plot", tmp_path / name)
+        assert (answer.status, (tmp_path / name).exists()) == (0, True)
+    points = call("plot", "four-bar-by-lengths", "--mode", "2", "--json").json["joints"]
+    assert points[2]["position"][1] < 0
+    assert call("dof", "four-bar", "--json").json["modes"] is None
+    refused(call("dof", "four-bar-by-lengths", "--mode", "3"), "--mode: found 3, expected 1 or 2")
+    refused(call("dof", "four-bar-by-lengths", "--mode", "0"), "--mode: found '0'")
+    refused(call("dof", "four-bar", "--mode", "1"), "has the places of its joints")
+    refused(call("dof", "puma560", "--mode", "1"), "is no mechanism")
+    refused(call("dof", "four-bar-by-lengths", "--set", "angle=1e9*0+200", "--set", "angl=1"), "did you mean 'angle'?")
+
+
+def test_the_ground_is_said(call, tmp_path):
+    record = call("dof", "four-bar", "--json").json
+    assert (record["ground"], record["ground_named"], record["ground_note"]) == ("ground", False, None)
+    assert "ground        ground, the first link" in call("dof", "four-bar").text
+    named = described(tmp_path, LINKS, *FOUR, tail="ground: crank\n")
+    record = call("dof", named, "--json").json
+    assert (record["ground"], record["ground_named"], record["ground_note"]) == ("crank", True, None)
+    assert "crank, as the file says" in call("dof", named).text
+
+
+@pytest.mark.parametrize(
+    ("links", "ground", "said"),
+    [
+        ("crank, ground, coupler, rocker", "ground", "though ground looks like it: `ground: ground`"),
+        ("crank, Base plate, coupler, rocker", "Base plate", "though Base plate looks like it"),
+        ("rocker, a, coupler, crank", "a", "though its name is that of a link that moves"),
+        ("b, d, a, c", "d", None),
+        ("c, d, a, b", "d", "though all drives are at d and none at c"),
+    ],
+)
+def test_a_first_link_that_does_not_look_like_the_ground_gets_a_note(call, tmp_path, links, ground, said):
+    first, _, *rest = (part.strip() for part in links.split(","))
+    names = {"ground": ground, "crank": first, "coupler": rest[0], "rocker": rest[1]}
+    if said and "drives" in said:
+        names = {"ground": "d", "crank": "a", "coupler": "b", "rocker": "c"}
+    if said is None:
+        names = {"ground": "d", "crank": "b", "coupler": "a", "rocker": "c"}
+    joints = [", ".join(part for part in joint.split(", ")) for joint in FOUR]
+    for old, new in names.items():
+        joints = [joint.replace(f"[{old},", f"[@{new},").replace(f" {old}]", f" @{new}]") for joint in joints]
+    joints = [joint.replace("@", "") for joint in joints]
+    joints[0] += ", actuated: true"
+    answer = call("dof", described(tmp_path, links, *joints), "--json")
+    assert answer.status == 0
+    note = answer.json["ground_note"]
+    assert (note is None) if said is None else said in note
+    assert answer.json["mobility"] == 1
+
+
 # Robots and bases ------------------------------------------------------------------------------------
 
 
@@ -392,11 +458,10 @@ def test_a_parameter_changes_the_motion(call):
         (["car", "--trace", "3"], ["--trace is for mechanisms"]),
         (["parallel-four-bar-detuned", "--trace", "3"], ["does not move"]),
         (["shaky-triangle", "--trace", "3"], ["only trembles"]),
-        (["planetary", "--trace", "3"], ["contacts"]),
+        (["cam-roller", "--trace", "3"], ["contacts"]),
         (["four-bar", "--output", "x.npy"], ["an array holds configurations", "--trace N"]),
         (["four-bar", "--output", "x.txt"], ["expected a name that ends with"]),
-        (["four-bar", "--plot", "x.gif"], ["--plot: found 'x.gif'", ".png, .svg or .pdf"]),
-        (["sarrus", "--plot", "x.png"], ["is spatial, expected a planar mechanism"]),
+        (["four-bar", "--plot", "x.gif"], ["--plot: found 'x.gif'", ".png, .svg, .pdf or .html"]),
         (["puma560", "--plot", "x.png"], ["--plot is for mechanisms"]),
         (["fourbar"], ["did you mean four-bar"]),
         (["four-bar", "extra"], ["'extra'", "expected nothing more"]),

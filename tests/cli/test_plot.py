@@ -165,7 +165,7 @@ def test_a_page_and_a_text_need_no_matplotlib(call, tmp_path, monkeypatch):
         (["puma560", "--view", "1"], ["--view", "azimuth, elevation"]),
         (["puma560", "--view", "1,100"], ["--view", "±90"]),
         (["puma560", "--view", "up,1"], ["--view", "up"]),
-        (["four-bar"], ["mechanism"]),
+        (["car"], ["is a wheeled base"]),
         (["puma56"], ["puma56", "puma560"]),
     ],
 )
@@ -178,3 +178,31 @@ def test_what_is_wrong_gets_a_sentence(call, arguments, fragments, tmp_path, mon
     else:
         refused(answer, *fragments)
     assert not list(tmp_path.iterdir())
+
+
+def test_plot_draws_mechanisms(call, tmp_path):
+    text = call("plot", "four-bar").text
+    assert "Four-bar linkage" in text
+    assert "x [m]" in text
+    record = call("plot", "sarrus", "--json").json
+    assert (record["mechanism"], record["ground"], len(record["links"])) == ("sarrus", "base", 6)
+    assert record["joints"][0]["position"] == record["links"][0]["points"]["A1"]
+    rows = call("plot", "four-bar", "-f", "csv").csv
+    assert rows[0] == ["link", "joint", "x", "y", "z"]
+    assert len(rows) == 9
+    for name in ("a.html", "b.png"):
+        if name.endswith("png"):
+            pytest.importorskip("matplotlib")
+        answer = call("plot", "bennett", "--view", "10,20", "-o", tmp_path / name)
+        assert (answer.status, answer.out, answer.err) == (0, b"", "")
+    answer = call("plot", "shaky-triangle", "-o", tmp_path / "c.html")
+    assert answer.status == 0
+    assert "drawn as it stands" in answer.err
+    answer = call("dof", "sarrus", "--plot", tmp_path / "d.html", "--point", "platform:0,0,1")
+    assert answer.status == 0
+    assert page_data(tmp_path / "d.html")["paths"]
+    for words, said in ((("four-bar", "--q", "1"), "--q is for robots"), (("car",), "is a wheeled base"),
+                        (("four-bar", "-o", "x.gif"), ".png, .svg, .pdf or .html")):  # fmt: skip
+        answer = call("plot", *words)
+        assert answer.status == 2
+        assert said in answer.err

@@ -15,9 +15,9 @@ from robokin.errors import InputError
 # The f of each joint type, as docs/format.md states them.
 FREEDOMS = {
     "fixed": 0, "revolute": 1, "prismatic": 1, "helical": 1, "cylindrical": 2, "universal": 2, "spherical": 3,
-    "planar": 3, "rolling": 1, "gear": 2, "cam": 2,
+    "planar": 3, "rolling": 1, "gear": 2, "cam": 2, "belt": 2,
 }  # fmt: skip
-CONTACTS = ("rolling", "gear", "cam")
+ONE_CONSTRAINT = ("gear", "cam", "belt")
 
 
 def only_joint(joint, space="planar"):
@@ -31,11 +31,12 @@ def only_joint(joint, space="planar"):
 @pytest.mark.parametrize("space", ["planar", "spherical", "spatial"])
 def test_every_type_and_its_freedoms(kind, f, space):
     text = linkage(f"type: {kind}, links: [ground, crank]", space=space)
-    if kind in CONTACTS and space != "planar":
+    if kind == "rolling" and space != "planar":
         error = error_of(text)
         assert f"found '{kind}' of joint 1 in a {space} mechanism" in error.message
         assert (error.line, error.column) == (6, 12)
     else:
+        f = 5 if kind in ONE_CONSTRAINT and space == "spatial" else f
         assert read_text(text).joints[0].freedoms == f
 
 
@@ -160,8 +161,36 @@ PAIR = "links: [ground, crank]"
         ("type: revolute, links: [ground, zzz]", "zzz]", "expected one of ground, crank, coupler, rocker"),
         ("type: revolute, links: [ground, [crank]]", "[crank]]", "found a list of 1"),
         ("type: revolute, links: [ground, crank, ground]", "[ground, crank", "expected different links"),
+        (f"type: chain, {PAIR}", "chain, links:", "expected belt with teeth"),
+        (f"type: revolute, {PAIR}, ratio: 2", "2", "expected it only on type gear or belt"),
+        (f"type: gear, {PAIR}, radii: [1, 2]", "[1, 2]", "expected it only on type belt"),
+        (f"type: gear, {PAIR}, ratio: 2, teeth: [1, 2]", "[1, 2]", "found 'ratio' and 'teeth'"),
+        (f"type: gear, {PAIR}, ratio: 0", "0", "found 0 as ratio of joint 1"),
+        (f"type: gear, {PAIR}, ratio: 1e99", "1e99", "expected one between"),
+        (f"type: gear, {PAIR}, ratio: nan", "nan", "expected a finite number"),
+        (f"type: gear, {PAIR}, ratio: [1, 2]", "[1, 2]", "found a list of 2"),
+        (f"type: belt, {PAIR}, ratio: -2", "-2", "`crossed: true` turns it round"),
+        (f"type: gear, {PAIR}, teeth: [10]", "[10]", "expected 2 values"),
+        (f"type: gear, {PAIR}, teeth: [10, 0]", "0]", "found 0 teeth"),
+        (f"type: gear, {PAIR}, teeth: [10, 12.5]", "12.5]", "expected a whole number from 1"),
+        (f"type: belt, {PAIR}, radii: [10, 0]", "0]", "found 0 as a radius"),
+        (f"type: belt, {PAIR}, radii: [10, 20, 30]", "[10, 20, 30]", "expected 2 values"),
+        (f"type: belt, {PAIR}, crossed: true", "true", "expected 'ratio', 'radii' or 'teeth' beside it"),
+        (f"type: gear, {PAIR}, carrier: ground", "ground", "expected 'ratio' or 'teeth' beside it"),
+        (f"type: gear, {PAIR}, ratio: 2, carrier: grund", "grund", "did you mean 'ground'"),
+        (f"type: gear, {PAIR}, ratio: 2, axis: [0, 1]", "[0, 1]", "found 'axis' and 'ratio'"),
+        (
+            "type: gear, links: [ground, crank, coupler], ratio: 2",
+            "[ground, cr",
+            "found 3 links of joint 1, expected two",
+        ),
+        ("type: belt, links: [ground, crank, coupler], radii: [1, 2, 3], crossed: true", "true", "radii below 0"),
         (f"type: revolute, {PAIR}, pitch: 1", "1", "a revolute joint, expected it only on type helical"),
-        (f"type: revolute, {PAIR}, axes: [[1, 0], [0, 1]]", "[[1, 0], [0, 1", "expected it only on type universal"),
+        (
+            f"type: revolute, {PAIR}, axes: [[1, 0], [0, 1]]",
+            "[[1, 0], [0, 1",
+            "expected it only on type universal or gear",
+        ),
         (f"type: revolute, {PAIR}, normal: [0, 0, 1]", "[0, 0, 1]", "expected it only on type planar"),
         (f"type: revolute, {PAIR}, freedoms: 1", "1", "expected it only on type custom"),
         (f"type: custom, {PAIR}", "custom, links:", "found no 'freedoms' of joint 1, expected freedoms: 0 to 3"),
@@ -221,7 +250,7 @@ def replaced(old, new):
         (replaced("[ground, crank, coupler, rocker]", "[ground]"), "4:8", "found 1 link, expected at least two"),
         (replaced("[ground, crank, coupler, rocker]", "[]"), "4:8", "found 0 links"),
         (replaced("[ground, crank, coupler, rocker]", "[a, b, a]"), "4:15", "found 'a' twice in the links"),
-        (replaced("[ground, crank, coupler, rocker]", "[a, {b: 1}]"), "4:12", "found a mapping, expected a name"),
+        (replaced("[ground, crank, coupler, rocker]", "[a, {b: 1}]"), "4:13", "found the unknown key 'b' in a link"),
         (replaced("[ground, crank, coupler, rocker]", "[a, ~]"), "4:12", "found nothing, expected a name"),
         (replaced("joints:\n", "ground: crnk\njoints:\n"), "5:9", "did you mean 'crank'"),
         (replaced("joints:\n", "ground: [a]\njoints:\n"), "5:9", "expected the ground"),

@@ -128,3 +128,11 @@ def test_what_a_description_describes_is_told():
     with pytest.raises(InputError, match="four-bar is a mechanism, expected a wheeled base"):
         robokin.load_wheeled("four-bar")
     assert robokin.load_mechanism("four-bar", crank_angle=90).joints[1].at[1] == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(("word", "expected"), [("spherical", "expected ball"), ("sphere", "expected ball")])
+def test_a_ball_is_a_wheel(word, expected):
+    text = "robokin: 1\nkind: wheeled\nname: x\nwheels:\n  - {{type: {}, at: [0, 0]{}}}\n"
+    assert read_text(text.format("ball", ", driven: true, angle: 1")).wheels[0].driven
+    assert expected in error_of(text.format(word, "")).message
+    assert "expected it only on type" in error_of(text.format("ball", ", turned: true")).message

@@ -74,7 +74,10 @@ def test_a_flat_parallelogram():
     found = mobility_of(four_bar([(0, 0), (1, 0), (4, 0), (3, 0)]))
     assert (found.motion.instantaneous, found.motion.generic, found.mobility) == (2, 1, 1)
     assert found.verdict == "singular"
-    assert found.note == "singular pose: 2 instantaneous freedoms here, 1 away from it"
+    assert found.note == (
+        "singular pose: 2 instantaneous freedoms here, 1 away from it; 2 branches of configurations meet in it, of 1 "
+        "freedom each"
+    )
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -126,9 +126,22 @@ def test_what_cannot_be_followed():
     with pytest.raises(InputError, match="unknown joint 'E'"):
         trace(robokin.load_mechanism("four-bar"), 5, "E")
     with pytest.raises(InputError, match="contacts"):
-        trace(robokin.load_mechanism("planetary"), 5)
+        trace(robokin.load_mechanism("cam-roller"), 5)
     with pytest.raises(InputError, match="no joint leads from the ground to 1"):
         trace(linkage([("R", "12", (0, 0))]), 5)
     dead = linkage([("R", "01", (0, 0)), ("R", "12", (1, 0)), ("R", "23", (3, 0)), ("R", "31", (2, 2))])
     with pytest.raises(InputError, match=r"joint 1 does not move.*--drive"):
         trace(dead, 5, "1")
+
+
+def test_gears_on_a_carrier_turn_as_their_radii_say():
+    """Willis: with the ring fixed the carrier turns sun / (sun + ring) as fast as the sun, all the way round."""
+    planetary = robokin.load_mechanism("planetary")
+    found = trace(planetary, 40)
+    sun, carrier = (found.values[:, found.labels.index(name)] for name in "AB")
+    radii = planetary.parameters
+    ring = radii["sun"] + 2 * radii["planet"]
+    assert np.ptp(sun) > 6.0
+    assert np.allclose(carrier * (radii["sun"] + ring), sun * radii["sun"], atol=1e-10)
+    pair = trace(robokin.load_mechanism("gear-pair"), 20)
+    assert np.allclose(pair.values[:, 0], -2.5 * pair.values[:, 1], atol=1e-10)

@@ -18,6 +18,8 @@ from robokin.pictures.picture import Cloud, Degrees, Panel, Picture
 from robokin.pictures.stills import still
 from robokin.units import Units
 
+from .browser import evaluate, needs_browser
+
 BOX = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
 
 
@@ -115,3 +117,50 @@ def test_a_page_holds_the_outlines_in_the_units(picture):
 def test_a_flat_cloud_has_a_page(picture, rng):
     points = np.column_stack([rng.uniform(size=(20, 2)), np.zeros(20)])
     assert data_of(page(Picture("", "", Units(), cloud=Cloud(points, points[:, 2]))))["cloud"]["high"][2] > 0.0
+
+
+def test_a_cloud_of_one_point_has_a_page_and_a_still(matplotlib):
+    point = np.array([[0.1, 0.2, 0.3]])
+    alone = Picture("", "", Units(), cloud=Cloud(point, point[:, 2], "", [point]))
+    cloud = data_of(page(alone))["cloud"]
+    assert np.allclose(cloud["low"], point[0])
+    assert still(alone, "png").startswith(b"\x89PNG")
+
+
+PRESSED = """
+const canvas = document.getElementById("cloud"), ctx = canvas.getContext("2d");
+const pixels = () => ctx.getImageData(0, 0, canvas.width, canvas.height).data;
+const ink = (data, good) => { let n = 0; for (let i = 0; i < data.length; i += 4) n += good(data, i); return n; };
+const arm = (d, i) => d[i] === 200 && d[i + 1] === 85 && d[i + 2] === 27;
+const drawn = (d, i) => Math.min(d[i], d[i + 1], d[i + 2]) < 240;
+const press = async (key) => {
+  canvas.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true})); await frame(); await frame();
+  return pixels().slice();
+};
+await frame(); await frame();
+const first = pixels().slice(), turned = await press("ArrowLeft"), near = await press("+"), home = await press("0");
+let cut;
+for (let i = 0; i < 12; i++) cut = await press("c");
+const same = (a, b) => a.every((v, i) => v === b[i]);
+return {turned: !same(first, turned), near: !same(turned, near), home: same(first, home),
+        size: [canvas.width, canvas.height],
+        whole: ink(first, drawn), cut: ink(cut, drawn), hidden: ink(first, arm), bare: ink(cut, arm)};
+"""
+
+
+@needs_browser
+def test_keys_turn_a_cloud_and_cut_it_open_and_the_arm_stands_in_it(picture, tmp_path):
+    rng = np.random.default_rng(3)
+    points = rng.normal(size=(20000, 3))
+    points *= 0.5 * (rng.uniform(0.5, 1.0, 20000) ** (1 / 3) / np.linalg.norm(points, axis=1))[:, None]
+    arm = np.array([[0.0, 0.0, 0.0], [0.2, 0.1, 0.1], [0.3, 0.1, 0.2]])
+    seen = evaluate(page(Picture("", "", Units(), cloud=Cloud(points, points[:, 2], arms=[arm]))), PRESSED, tmp_path)
+    assert isinstance(seen, dict), seen
+    assert seen["turned"]
+    assert seen["near"]
+    assert seen["home"]
+    assert seen["cut"] < seen["whole"]
+    # Within the shell the arm only shines through; cut open it is seen.
+    assert seen["hidden"] < 0.75 * seen["bare"]
+    assert seen["bare"] > 100
+    assert seen["whole"] > 0.12 * seen["size"][0] * seen["size"][1]

@@ -30,11 +30,6 @@ if TYPE_CHECKING:
 
 SPACES = ("planar", "spherical", "spatial")
 
-PLOTS = (".png", ".svg", ".pdf")
-
-DRAWN_STEPS = 240
-"""Configurations of a path that is drawn, unless --trace says how many."""
-
 MOST_STEPS = 100_000
 """Configurations along a motion."""
 
@@ -80,10 +75,16 @@ def command(
     ] = None,
     plot: Annotated[
         str | None,
-        typer.Option("--plot", "-p", metavar="FILE", help="Draw a planar mechanism to .png, .svg or .pdf."),
+        typer.Option(
+            "--plot", "-p", metavar="FILE", help="Draw the mechanism to .png, .svg, .pdf, or .html that moves."
+        ),
+    ] = None,
+    mode: Annotated[
+        str | None,
+        typer.Option("--mode", metavar="N", help="Which way to put links of given lengths together."),
     ] = None,
     seed: Annotated[
-        str | None, typer.Option("--seed", metavar="N", help="Seed of the poses that are tried.  [default: 0]")
+        str | None, typer.Option("--seed", metavar="N", help="Taken as before: nothing hangs on it.")
     ] = None,
     output: ArrayOutputOption = None,
     format: FormatOption = None,
@@ -100,8 +101,8 @@ def command(
     steerability and manoeuvrability.
 
     Joints by letters: R revolute, P prismatic, H helical, C cylindrical, U universal, S spherical, E planar,
-    F fixed, G a contact (gears, cams: 2 freedoms in the plane, 5 in space). A joint that pins m links counts as
-    m − 1 joints.
+    F fixed, G a contact (gears, cams, belts: 2 freedoms in the plane and on the sphere, 5 in space). A joint that
+    pins m links counts as m − 1 joints.
 
     Examples:
         robokin dof four-bar
@@ -122,11 +123,15 @@ def command(
     bare = {"--links": links, "--joints": joints, "--space": space}
     motion = {"--between": between, "--trace": trace, "--drive": drive, "--point": point, "--plot": plot}
     if name is None:
-        _refuse(motion | {"--set": set_}, "is for a description", "its name")
+        _refuse(motion | {"--set": set_, "--mode": mode}, "is for a description", "its name")
         data = _bare(links, joints, space, kind)
     else:
         _refuse(bare, "counts without a description", f"it without {name}")
-        data = _described(name, kind, motion, _whole(seed, "--seed", 0, 2**63 - 1) or 0, (length, angle), set_)
+        from robokin.cli.arguments import way_of
+
+        data = _described(
+            name, kind, motion, _whole(seed, "--seed", 0, 2**63 - 1) or 0, (length, angle), set_, way_of(mode)
+        )
     with sink(output) as stream:
         stream.write(data)
     return DONE
@@ -184,13 +189,13 @@ def _written(record: dict[str, Any], kind: str) -> bytes:
 
 def _described(
     name: str, kind: str, motion: dict[str, Any], seed: int, unit_names: tuple[str | None, str | None],
-    set_: list[str] | None,
+    set_: list[str] | None, mode: int | None,
 ) -> bytes:  # fmt: skip
     """The answer about what a description describes."""
     from robokin.description.library import load_any
     from robokin.model import Mechanism, Robot
 
-    entry = load_any(name, parameter_overrides(set_))
+    entry = load_any(name, parameter_overrides(set_), mode)
     units = effective_units(entry.units, *unit_names)
     if isinstance(entry, Mechanism):
         return _mechanism(entry, units, kind, motion, seed)
@@ -216,7 +221,9 @@ def _mechanism(mechanism: Mechanism, units: Units, kind: str, motion: dict[str, 
     if steps is not None and motion["--between"]:
         raise InputError("--trace and --between exclude each other, expected one of them")
     if plot is not None:
-        _drawable(plot, mechanism)
+        from robokin.cli.mechanism_plots import check_drawable
+
+        check_drawable(mechanism, plot, "--plot")
     if steps is not None or plot is not None:
         from robokin.cli.motions import Motion, parse_point
 
@@ -233,26 +240,26 @@ def _mechanism(mechanism: Mechanism, units: Units, kind: str, motion: dict[str, 
 
 def _plot(plot: str, mechanism: Mechanism, moved: Trace | None, points: list[Point], units: Units) -> None:
     """Draw to a file."""
+    from pathlib import Path
+
+    from robokin.cli.mechanism_plots import picture_of
     from robokin.cli.motions import paths_of
     from robokin.cli.output.sink import sink
-    from robokin.pictures.mechanisms import mechanism_picture
 
     paths = paths_of(moved, points) if moved is not None else None
-    picture = mechanism_picture(mechanism, moved, paths, units, plot.rpartition(".")[2].lower())
+    picture = picture_of(mechanism, moved, paths, units, Path(plot).suffix.lower())
     with sink(plot, "--plot") as stream:
         stream.write(picture)
 
 
 def _trace(mechanism: Mechanism, steps: int | None, drive: str | None, wanted: bool) -> Trace | None:
     """Configurations along the motion; None where a picture alone is asked of what does not move."""
+    from robokin.cli.mechanism_plots import DRAWN_STEPS, motion_to_draw
     from robokin.mobility.trace import trace
 
     if wanted:
         return trace(mechanism, steps or DRAWN_STEPS, drive)
-    try:
-        return trace(mechanism, DRAWN_STEPS, drive)
-    except InputError:
-        return None  # what cannot move, or not be followed, can be drawn as it is
+    return motion_to_draw(mechanism, drive)[0]  # what cannot move, or not be followed, can be drawn as it is
 
 
 def _pair(between: str | None) -> tuple[str, str] | None:
@@ -263,20 +270,3 @@ def _pair(between: str | None) -> tuple[str, str] | None:
     if len(names) != 2 or not all(names):
         raise InputError(f"--between: found '{shown(between)}', expected two links with a comma: A,B")
     return names[0], names[1]
-
-
-def _drawable(plot: str, mechanism: Mechanism) -> None:
-    """Raise InputError before the work begins where a picture cannot be drawn after it."""
-    from pathlib import Path
-
-    from robokin.mobility.assembly import missing_geometry
-    from robokin.pictures.mechanisms import require_matplotlib
-
-    ending = Path(plot).suffix.lower()
-    if ending not in PLOTS:
-        raise InputError(f"--plot: found '{plot}', expected a name that ends with {or_list(PLOTS)}")
-    if mechanism.space != "planar":
-        raise InputError(f"--plot: {mechanism.name} is {mechanism.space}, expected a planar mechanism")
-    if len(missing_geometry(mechanism)) == len(mechanism.joints):
-        raise InputError(f"--plot: {mechanism.name} has no geometry, expected where its joints are")
-    require_matplotlib()

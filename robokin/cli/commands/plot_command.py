@@ -1,8 +1,8 @@
-"""`robokin plot`: pictures of an arm, still or turning."""
+"""`robokin plot`: pictures of an arm or a mechanism, still or turning."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -18,6 +18,10 @@ from robokin.cli.options import (
     output_format,
     parameter_overrides,
 )
+
+if TYPE_CHECKING:
+    from robokin.model import Mechanism
+    from robokin.units import Units
 
 
 def command(
@@ -42,6 +46,10 @@ def command(
             "--view", metavar="AZ,EL", help="Azimuth and elevation of the eye in degrees.  [default: -58,22 or flat]"
         ),
     ] = None,
+    mode: Annotated[
+        str | None,
+        typer.Option("--mode", metavar="N", help="Which way to put a mechanism's links of given lengths together."),
+    ] = None,
     output: Annotated[
         str | None,
         typer.Option("--output", "-o", metavar="FILE", help="Draw to .png, .svg, .pdf, or .html that turns."),
@@ -52,11 +60,12 @@ def command(
     length: LengthOption = None,
     set_: SetOption = None,
 ) -> int:
-    """A picture of an arm: links, joints by kind, frames, and every solution of a target.
+    """A picture of an arm or a mechanism: links, joints by kind, frames, and every solution of a target.
 
     Joints that turn are cylinders along their axes, joints that slide are boxes with their stroke; frames are x red,
     y green, z blue. An .html is one page that needs no network: the arm turns with the mouse and has a slider for
-    each joint. Without --output a stick figure is drawn as text; --json has its corners.
+    each joint; a mechanism has one along its motion. Without --output a stick figure is drawn as text; --json has its
+    corners. `robokin dof NAME --plot FILE` draws a mechanism with another drive, or the paths of points.
 
     The status is 3 when the target cannot be reached; the nearest configuration is then drawn.
 
@@ -66,16 +75,19 @@ def command(
         robokin plot planar3r --q 30,40,50 --q 60,20,10 --json
         robokin plot puma560 --ik "Trans(500,149,200) RPY(0,90,0)" -o arms.html
         robokin plot scara --ik 400,200,300 -f csv
+        robokin plot bennett -o bennett.html
     """
     import numpy as np
 
     from robokin.cli import say
-    from robokin.cli.arguments import joint_factors, load_robot, parse_configuration
+    from robokin.cli.arguments import joint_factors, load_robot, parse_configuration, way_of
     from robokin.cli.output.sink import sink
     from robokin.cli.plots import FARTHEST, answer, asked, ending_of, scene_of, view_of
     from robokin.cli.poses import PoseMaker
+    from robokin.description.library import load_any
     from robokin.errors import InputError
     from robokin.kinematics.forward import joint_frames
+    from robokin.model import Mechanism
     from robokin.pictures.arm import default_configuration
 
     kind = output_format(format, json)
@@ -83,6 +95,13 @@ def command(
         raise InputError("--output draws a picture by the file's ending, expected no --format and no --json")
     ending = ending_of(output) if output is not None else ""
     eye = view_of(view)
+    loaded = load_any(robot, parameter_overrides(set_), way_of(mode))
+    if isinstance(loaded, Mechanism):
+        for option, value in (("--q", q), ("--ik", ik), ("--frames", frames)):
+            if value:
+                raise InputError(f"{option} is for robots, expected none for a mechanism: `robokin dof` has --drive")
+        _draw_mechanism(loaded, effective_units(loaded.units, length, angle), kind, output, eye)
+        return DONE
     model = load_robot(robot, parameter_overrides(set_))
     units = effective_units(model.units, length, angle)
     if q and "-" in q:
@@ -123,3 +142,28 @@ def command(
         with sink(output) as stream:
             stream.write(data)
     return NO if wanted.unreachable else DONE
+
+
+def _draw_mechanism(
+    mechanism: Mechanism, units: Units, kind: str | None, output: str | None, eye: tuple[float, float] | None
+) -> None:
+    """Write a mechanism's picture, or what it shows."""
+    from pathlib import Path
+
+    from robokin.cli import say
+    from robokin.cli.mechanism_plots import answer, check_drawable, motion_to_draw, picture_of
+    from robokin.cli.output.sink import sink
+    from robokin.pictures.mechanism_scene import mechanism_scene
+
+    check_drawable(mechanism, output, "--output")
+    if output is None:
+        with sink(None) as stream:
+            for data in answer(kind or "table", mechanism_scene(mechanism, None, None, units, eye)):
+                stream.write(data)
+        return
+    moved, note = motion_to_draw(mechanism)
+    if note:
+        say(f"drawn as it stands: {note}")
+    picture = picture_of(mechanism, moved, None, units, Path(output).suffix.lower(), eye)
+    with sink(output) as stream:
+        stream.write(picture)

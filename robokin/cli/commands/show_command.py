@@ -177,6 +177,8 @@ def mechanism_record(mechanism: Mechanism, units: Units) -> dict[str, Any]:
                 "at": None if joint.at is None else (joint.at / units.metres).tolist(),
                 "axes": None if joint.axes is None else joint.axes.tolist(),
                 "actuated": joint.actuated,
+                "turns": [joint.gearing[0] / number for number in joint.gearing] or None,
+                "carrier": joint.carrier or None,
             }
             for joint in mechanism.joints
         ],
@@ -277,6 +279,8 @@ def _mechanism_table(record: dict[str, Any]) -> bytes:
     for joint in record["joints"]:
         at = "" if joint["at"] is None else " ".join(show(value) for value in joint["at"])
         axes = "; ".join(" ".join(show(part) for part in axis) for axis in joint["axes"] or [])
+        if joint["turns"]:
+            axes += ("; " if axes else "") + "turns " + " : ".join(show(turns) for turns in joint["turns"])
         drawn.add_row(joint["name"], joint["type"], " ".join(joint["links"]), str(joint["freedoms"]), at, axes)
     entries = [
         ("space", record["space"]),

@@ -1,0 +1,80 @@
+"""A page in one file that needs no network: the mechanism turns with the mouse and moves along its motion.
+
+`window.robokin.move(k)` shows the configuration k of the motion, `window.robokin.pose(link)` is that link's
+displacement then: 3 rows of 4 numbers, in the page's length unit.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robokin.pictures.mechanism_scene import MechanismScene
+from robokin.pictures.mechanism_shape import Piece, link_colours
+from robokin.pictures.page import filled
+
+Array = NDArray[np.float64]
+
+DIGITS = 6
+"""Significant digits of what is only drawn: far finer than a screen."""
+
+MOST = 360
+"""Configurations that a page holds: more are thinned out."""
+
+
+def mechanism_page(scene: MechanismScene) -> bytes:
+    """The scene as an .html file."""
+    mechanism, units, trace = scene.mechanism, scene.units, scene.trace
+    scale = 1.0 / units.metres
+    low, high = scene.bounds()
+    colours = link_colours(mechanism)
+    moving = [link for link in mechanism.links if link != mechanism.ground]
+    picked = np.zeros(0, dtype=int)
+    if trace is not None:
+        picked = np.unique(np.round(np.linspace(0, len(trace.poses) - 1, min(MOST, len(trace.poses)))).astype(int))
+    data: dict[str, Any] = {
+        "title": mechanism.name,
+        "length": units.length,
+        "angle": units.angle,
+        "links": [[link, colours[link], link == mechanism.ground] for link in mechanism.links],
+        "moving": [moving.index(link) if link in moving else -1 for link in mechanism.links],
+        "poses": [],
+        "labels": [],
+        "turning": [],
+        "values": [],
+        "closed": trace is not None and trace.closed,
+        "pieces": [_piece(piece, scale) for piece in scene.shape.pieces],
+        "plates": [[plate.body, plate.colour, _short(plate.corners * scale)] for plate in scene.shape.plates],
+        "names": [[name, body, _short(place * scale)] for name, body, place in scene.shape.names],
+        "ways": [_short(way[picked] * scale) for way in scene.ways()],
+        "paths": [_short(scene.paths[picked, i] * scale) for i in range(scene.paths.shape[1])],
+        "size": scene.shape.size * scale,
+        "box": _short(np.array([low, high]) * scale),
+        "view": list(scene.view),
+        "note": scene.note,
+        "command": f"robokin dof {mechanism.id}" + (f" --trace {len(picked)}" if trace is not None else ""),
+    }
+    if trace is not None:
+        numbers = [mechanism.links.index(link) for link in moving]
+        poses = trace.poses[picked][:, numbers, :3].copy()
+        poses[..., 3] *= scale
+        factors = np.where(trace.turning, units.radians, units.metres)
+        data |= {
+            "poses": _short(poses.reshape(len(picked), len(moving), 12)),
+            "labels": list(trace.labels),
+            "turning": trace.turning.tolist(),
+            "values": _short(trace.values[picked] / factors),
+        }
+    return filled("mechanism.html", mechanism.name, data)
+
+
+def _piece(piece: Piece, scale: float) -> list[Any]:
+    ends = [_short(piece.a * scale), _short(piece.b * scale), _short(piece.across)]
+    return [piece.colour, *piece.bodies, *ends, *_short(np.array(piece.widths) * scale), piece.sides]
+
+
+def _short(values: Array) -> Any:
+    digits = [float(f"{value:.{DIGITS}g}") + 0.0 for value in np.ravel(values).tolist()]
+    return np.reshape(digits, np.shape(values)).tolist()
