@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import sys
 
-# One core: a ratio should compare programs, not thread pools. Set before numpy is imported.
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(name, "1")
-
-# The environment has to be set first.
-from benchmarks import forward, inverse, machine, mobility, names, nearest, pipes, redundant, start, workspace  # noqa: E402
+from benchmarks import forward, inverse, machine, mobility, names, nearest, pipes, redundant, start, workspace
 
 BENCHMARKS = {
     "forward": forward.run,

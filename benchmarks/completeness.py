@@ -18,16 +18,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-# One core, and the judge, which the tests use too.
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(name, "1")
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
+import numpy as np
+from inverse import arms, judge, truth
 
-import numpy as np  # noqa: E402
-from inverse import arms, judge, truth  # noqa: E402
-
-import robokin  # noqa: E402
-from benchmarks import machine  # noqa: E402
+import robokin
+from benchmarks import machine
 
 SEED = 560
 SHORT = {"unanswered": "unans", "lost": "lost", "on no family": "nofam", "falsely complete": "false", "wrong": "wrong",

@@ -8,26 +8,19 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 import time
 import warnings
 from dataclasses import dataclass, field
-from pathlib import Path
 
-# One core, and arms whose sizes are known, which the tests use too.
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(name, "1")
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
+import numpy as np
+from workspace import spare_sizes
+from workspace.known_sizes import FAMILIES, Known, general_arm, known_arm
 
-import numpy as np  # noqa: E402
-from workspace import spare_sizes  # noqa: E402
-from workspace.known_sizes import FAMILIES, Known, general_arm, known_arm  # noqa: E402
-
-from benchmarks import machine  # noqa: E402
-from robokin.workspace.extremes import extent  # noqa: E402
-from robokin.workspace.measure import measure  # noqa: E402
-from robokin.workspace.membership import finitely_many  # noqa: E402
-from robokin.workspace.space import space_of  # noqa: E402
+from benchmarks import machine
+from robokin.workspace.extremes import extent
+from robokin.workspace.measure import measure
+from robokin.workspace.membership import finitely_many
+from robokin.workspace.space import space_of
 
 POINTS = (2048, 131072, 2097152)
 

@@ -7,31 +7,23 @@
 from __future__ import annotations
 
 import argparse
-import os
-import sys
 import time
 import zlib
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
-# One core, and the judge, which the tests use too.
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(name, "1")
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
+import numpy as np
+from inverse import arms, judge, truth
 
-import numpy as np  # noqa: E402
-from inverse import arms, judge, truth  # noqa: E402
-
-import robokin  # noqa: E402
-from benchmarks import machine  # noqa: E402
-from robokin.inverse.analysis import analysis_of  # noqa: E402
-from robokin.inverse.arcs import arcs_within  # noqa: E402
-from robokin.inverse.closing import newton_within  # noqa: E402
-from robokin.inverse.hold import held_arm  # noqa: E402
-from robokin.inverse.solution_sets import families  # noqa: E402
-from robokin.inverse.solve import solve_many  # noqa: E402
-from robokin.inverse.verify import CLOSES, SAME, residuals  # noqa: E402
+import robokin
+from benchmarks import machine
+from robokin.inverse.analysis import analysis_of
+from robokin.inverse.arcs import arcs_within
+from robokin.inverse.closing import newton_within
+from robokin.inverse.hold import held_arm
+from robokin.inverse.solution_sets import families
+from robokin.inverse.solve import solve_many
+from robokin.inverse.verify import CLOSES, SAME, residuals
 
 SEED = 201
 KINDS = ("inside", "one at a limit", "some", "all but one", "all", "all nearly")

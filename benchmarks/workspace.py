@@ -19,10 +19,10 @@ from benchmarks.machine import best_of, line
 from robokin.model import JointType, Robot
 from robokin.workspace.attitudes import attitudes, group_of
 from robokin.workspace.extremes import extent
-from robokin.workspace.orientation import fractions
 from robokin.workspace.parallel import in_order, usable_cores
 from robokin.workspace.sampling import TASK, joint_values, positions, sample_blocks
 from robokin.workspace.space import Space, space_of
+from robokin.workspace.trials import fractions
 
 SAMPLES = 1 << 25
 POSITIONS = 8e6

@@ -13,7 +13,7 @@ from robokin.cli.output.numbers import counted, show
 from robokin.cli.output.tables import WIDTH, heading, pairs, render, table
 from robokin.cli.workspaces import GROUPS, WORDS, Cut, holds_at_a_point, known, ranges_of
 from robokin.units import Units
-from robokin.workspace.orientation import Place
+from robokin.workspace.place import Place
 from robokin.workspace.result import Dexterity, Measure, Workspace
 
 POWERS = {1: "", 2: "²", 3: "³"}

@@ -13,7 +13,7 @@ from robokin.cli.arguments import joint_factors
 from robokin.pictures.outline import Outline
 from robokin.spatial import quaternion_from_rotation
 from robokin.units import Units
-from robokin.workspace.orientation import Place
+from robokin.workspace.place import Place
 from robokin.workspace.result import Dexterity, Measure, Workspace
 
 Array = NDArray[np.float64]

@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
 
 from robokin.description.functions import ARGUMENTS, FUNCTIONS, IN_DEGREES, IN_RADIANS, PLAIN, TAKES_ANGLE, Function
 from robokin.errors import ExpressionError, did_you_mean, shown
@@ -369,64 +369,3 @@ def evaluate(text: str, scope: Scope, *, angle: bool = False) -> Value:
 def names_parameters(text: str, scope: Scope) -> bool:
     """Whether an expression that can be read names a parameter."""
     return bool(scope.names) and any(token.text in scope.names for token in tokenize(text) if token.kind == "name")
-
-
-@dataclass
-class Parameters:
-    """Named expressions that may refer to each other in any order; evaluated when asked for.
-
-    `texts` maps a name to its expression.
-    """
-
-    texts: Mapping[str, str]
-    degrees: bool
-    known: dict[str, Value] = field(default_factory=dict)
-
-    def scope(self) -> Scope:
-        """A scope in which these parameters can be named."""
-        return Scope(self.degrees, self.texts.keys(), self.value)
-
-    def value(self, name: str) -> Value:
-        """The value of one parameter. Raises ExpressionError, also for a circle.
-
-        What it refers to is evaluated first, so that a long chain of parameters needs no deep recursion
-        and an error is that of the parameter where it stands (the error's `parameter`).
-        """
-        if name in self.known:
-            return self.known[name]
-        scope = self.scope()
-        path: dict[str, Iterator[str]] = {name: self._named(name)}
-        while path:
-            last = next(reversed(path))
-            needed = next((other for other in path[last] if other not in self.known), None)
-            if needed is None:
-                try:
-                    self.known[last] = evaluate(self.texts[last], scope)
-                except ExpressionError as error:
-                    error.parameter = last
-                    raise
-                del path[last]
-            elif needed in path:
-                raise _circle([*path][[*path].index(needed) :])
-            else:
-                path[needed] = self._named(needed)
-        return self.known[name]
-
-    def _named(self, name: str) -> Iterator[str]:
-        """The parameters that one refers to."""
-        try:
-            tokens = tokenize(self.texts[name])
-        except ExpressionError as error:
-            error.parameter = name
-            raise
-        return (token.text for token in tokens if token.kind == "name" and token.text in self.texts)
-
-
-def _circle(names: list[str]) -> ExpressionError:
-    """The error for parameters that refer to each other, the last to the first."""
-    few = names if len(names) <= 10 else [*names[:9], "…", names[-1]]
-    return ExpressionError(
-        f"found parameters that refer to each other in a circle ({' -> '.join([*few, names[0]])}), "
-        "expected a number in one of them",
-        parameter=names[0],
-    )

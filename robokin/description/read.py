@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robokin.description.cells import Context, choice_of, expression_text, fields_of, text_of
-from robokin.description.expressions import NAME, RESERVED, Parameters
+from robokin.description.expressions import NAME, RESERVED
+from robokin.description.parameters import Parameters
 from robokin.description.schema import KINDS, MECHANISM, ROBOT, UNITS, VERSION, WHEELED
 from robokin.description.tree import Mapping, Mark, Node, Scalar, describe, read_tree
 from robokin.errors import DescriptionError, ExpressionError, InputError, did_you_mean, nearest, shown

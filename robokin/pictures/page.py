@@ -19,8 +19,8 @@ Array = NDArray[np.float64]
 DIGITS = 5
 """Significant digits of a place in a plane picture: far finer than a screen."""
 
-INCLUDE = re.compile(r"@INCLUDE ([a-z]+\.js)@")
-"""Where a page takes in a script that it shares with others."""
+INCLUDE = re.compile(r"@INCLUDE ([a-z]+\.(?:js|css))@")
+"""Where a page takes in a script or a style that it shares with others."""
 
 STEPS = 65535
 """Steps along a side of the cloud's box."""

@@ -7,7 +7,8 @@ import time
 
 import pytest
 
-from robokin.description.expressions import FUNCTIONS, MAX_LENGTH, Parameters, Scope, Value, evaluate
+from robokin.description.expressions import FUNCTIONS, MAX_LENGTH, Scope, Value, evaluate
+from robokin.description.parameters import Parameters
 from robokin.errors import ExpressionError
 
 RADIANS = Scope()

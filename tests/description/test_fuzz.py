@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from kinematics.reference import rot, trans
 
 from robokin.description import library_names, read_text
-from robokin.description.expressions import Parameters, Scope, evaluate
+from robokin.description.expressions import Scope, evaluate
 from robokin.description.library import library_folder
+from robokin.description.parameters import Parameters
 from robokin.description.transforms import evaluate_transform
 from robokin.errors import DescriptionError, ExpressionError, RobokinError
 from robokin.model import Mechanism, Robot, WheeledBase

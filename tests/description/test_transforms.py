@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from kinematics.reference import rot, trans
 
-from robokin.description.expressions import Parameters, Scope
+from robokin.description.expressions import Scope
+from robokin.description.parameters import Parameters
 from robokin.description.transforms import evaluate_transform, pose_from_matrix
 from robokin.errors import ExpressionError
 from robokin.units import Units

@@ -21,7 +21,7 @@ from robokin.workspace.extremes import extent
 from robokin.workspace.measure import measure
 from robokin.workspace.membership import decided, proven_out, reachable
 from robokin.workspace.one_spare import one_spare_of
-from robokin.workspace.orientation import at_point
+from robokin.workspace.place import at_point
 from robokin.workspace.region import region_of
 from robokin.workspace.sampling import positions
 from robokin.workspace.space import space_of

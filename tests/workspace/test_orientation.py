@@ -14,7 +14,8 @@ from robokin.spatial import rotation_transform, transform
 from robokin.workspace.attitudes import attitudes, group_of, spiral, super_spiral
 from robokin.workspace.critical import Every, worst_beyond
 from robokin.workspace.extremes import extent
-from robokin.workspace.orientation import at_point, dexterity
+from robokin.workspace.orientation import dexterity
+from robokin.workspace.place import at_point
 from robokin.workspace.result import Dexterity, Measure
 from robokin.workspace.space import Space, space_of
 from robokin.workspace.trials import every, fractions, reached, table, telling_order

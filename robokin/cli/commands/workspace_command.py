@@ -179,7 +179,7 @@ def _places(robot: Robot, units: Units, kind: str, at: list[str], arguments: dic
     from robokin.cli.output.text import csv_records, json_document, json_line, json_list
     from robokin.cli.progress import Stages
     from robokin.cli.workspaces import place_record
-    from robokin.workspace.orientation import at_point
+    from robokin.workspace.place import at_point
     from robokin.workspace.space import space_of
     from robokin.workspace.stages import stage
 
