@@ -1,44 +1,95 @@
-# Everything here runs in an environment of the project's own, made on first use.
-PYTHON ?= python3
-VENV   := .venv
-BIN    := $(VENV)/bin
+# Everything here runs in environments of the project's own, made on first use from the locks in .ci/requirements/.
+PYTHON  ?= python3
+VENV    ?= .venv
+BIN     := $(VENV)/bin
+INSTALL := python -m pip install --quiet --disable-pip-version-check --no-compile
+LOCKED  := $(INSTALL) --require-hashes
+HERE    := $(INSTALL) --no-deps --no-build-isolation --editable .
+
+# Processes share the cores; a library that takes all of them for each makes every one slower.
+export OPENBLAS_NUM_THREADS ?= 1
+
+# As many processes as there are cores to run on; on one core none beside pytest's own.
+WORKERS ?= $(shell $(PYTHON) -c 'import os; n = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count(); print(n if n > 1 else 0)')
+PYTEST  := python -m pytest --quiet --numprocesses $(WORKERS) --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench completeness coverage wheel docs clean
+.PHONY: help demo test test-oldest test-newest lint fuzz bench completeness coverage wheel audit docs lock clean
 
 help:            ## what can be made
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
 
-$(VENV)/installed: pyproject.toml
+# What a user needs; what developers need beside it; what releases need beside that.
+$(VENV)/user: .ci/requirements/user.txt .ci/requirements/build.txt pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(BIN)/$(LOCKED) -r .ci/requirements/user.txt -r .ci/requirements/build.txt
+	$(BIN)/$(HERE)
 	@touch $@
 
-demo: $(VENV)/installed ## install, and the pose of the PUMA 560's hand
+$(VENV)/dev: $(VENV)/user .ci/requirements/dev.txt
+	$(BIN)/$(LOCKED) -r .ci/requirements/dev.txt
+	@touch $@
+
+$(VENV)/release: $(VENV)/dev .ci/requirements/release.txt
+	$(BIN)/$(LOCKED) -r .ci/requirements/release.txt
+	@touch $@
+
+demo: $(VENV)/user ## install, and the pose of the PUMA 560
 	$(BIN)/robokin fk puma560 --q home
 
-test: $(VENV)/installed ## the tests
-	$(BIN)/python -m pytest --quiet
+test: $(VENV)/dev ## the tests
+	$(BIN)/$(PYTEST)
 
-lint: $(VENV)/installed ## style and types
+$(VENV)-oldest/installed: .ci/requirements/oldest.txt pyproject.toml
+	$(PYTHON) -m venv $(VENV)-oldest
+	$(VENV)-oldest/bin/$(LOCKED) -r .ci/requirements/oldest.txt
+	$(VENV)-oldest/bin/$(HERE)
+	@touch $@
+
+PART := $(addprefix tests/,spatial description test_imports.py test_installation.py test_fuzz.py mobility/test_screws.py \
+  pictures/test_drawings.py cli/test_bad_input.py cli/test_fk.py cli/test_frame.py cli/test_help.py)
+test-oldest: $(VENV)-oldest/installed ## a minute's part of the tests with the lowest versions that pyproject.toml permits
+	$(VENV)-oldest/bin/$(PYTEST) $(PART)
+
+test-newest: $(VENV)/release ## the tests with the newest versions that there are today, without the lock
+	$(PYTHON) -m venv --clear $(VENV)-newest
+	$(BIN)/uv pip install --quiet --python $(VENV)-newest --upgrade --editable '.[plot]' --group test
+	$(VENV)-newest/bin/$(PYTEST)
+
+lint: $(VENV)/dev ## style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-bench: $(VENV)/installed ## speed, as ratios against peers and limits, in one run
+fuzz: $(VENV)/dev ## hostile calls of every command for five minutes; FUZZ_SECONDS=30, FUZZ_SEED=7
+	$(BIN)/python tests/fuzz.py
+
+bench: $(VENV)/dev ## speed, as ratios against peers and limits, in one run
 	$(BIN)/python -m benchmarks
 
-completeness: $(VENV)/installed ## whether all solutions are all, counted; make completeness FULL=1 takes hours
+completeness: $(VENV)/dev ## whether all solutions are all, counted; make completeness FULL=1 takes hours
 	FULL=$(FULL) $(BIN)/python -m benchmarks.completeness
 
-coverage: $(VENV)/installed ## whether the bounds of sizes hold as often as they say; make coverage FULL=1 takes hours
+coverage: $(VENV)/dev ## whether the bounds of sizes hold as often as they say; make coverage FULL=1 takes hours
 	FULL=$(FULL) $(BIN)/python -m benchmarks.coverage
 
-wheel: $(VENV)/installed ## build the wheel and run it alone, outside this folder
+wheel: $(VENV)/release ## build the wheel and the list of what it stands on (CycloneDX) in dist/, and run it alone
 	PYTHON=$(BIN)/python tests/wheel.sh
 
-docs: $(VENV)/installed ## rerun every command of README.md and docs/, and write what it prints now
+audit: $(VENV)/release ## known vulnerabilities of what the locks install
+	$(BIN)/python tests/audit.py
+
+docs: $(VENV)/dev ## rerun every command of README.md and docs/, and write what it prints now
 	$(BIN)/python tests/documentation.py
 
-clean:           ## remove the environment and what was built
-	rm -rf $(VENV) dist build
+# One resolution for all: what is pinned for developers is what users and releases get.
+COMPILE := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --upgrade --custom-compile-command 'make lock'
+lock: $(VENV)/release ## renew the locks in .ci/requirements/ with today's versions
+	$(BIN)/$(COMPILE) -o .ci/requirements/dev.txt pyproject.toml --extra plot --group dev
+	$(BIN)/$(COMPILE) -o .ci/requirements/user.txt pyproject.toml --constraint .ci/requirements/dev.txt
+	$(BIN)/$(COMPILE) -o .ci/requirements/build.txt --group build --constraint .ci/requirements/dev.txt
+	$(BIN)/$(COMPILE) -o .ci/requirements/release.txt --group release --constraint .ci/requirements/dev.txt
+	$(BIN)/$(COMPILE) -o .ci/requirements/oldest.txt pyproject.toml --extra plot --group test --resolution lowest-direct
+
+clean:           ## remove the environments and what was built
+	rm -rf $(VENV) $(VENV)-oldest $(VENV)-newest dist build
