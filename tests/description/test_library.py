@@ -11,7 +11,7 @@ from description.texts import arm
 
 import robokin
 from robokin.description import library_names, load, load_any
-from robokin.description.library import is_path, library_folder
+from robokin.description.library import KINDS, is_path, library_files, library_folder
 from robokin.errors import InputError, RobokinError
 from robokin.model import Mechanism, Robot, WheeledBase
 from robokin.units import METRES, RADIANS
@@ -25,7 +25,6 @@ def test_every_entry_of_the_library_loads(name):
     assert entry.source
     assert entry.units.length in METRES
     assert entry.units.angle in RADIANS
-    assert "units:" in (library_folder() / f"{name}.yaml").read_text(encoding="utf-8"), "states its units"
     assert all(math.isfinite(value) for value in entry.parameters.values())
 
 
@@ -44,10 +43,31 @@ def test_every_number_of_the_library_is_finite_and_every_limit_holds_something(n
         assert pose.shape == (entry.n,)
 
 
+def test_every_file_states_its_units():
+    for path in library_files():
+        assert "units:" in path.read_text(encoding="utf-8"), path
+
+
 def test_names_are_sorted_and_many():
     names = library_names()
     assert names == sorted(names)
     assert len(names) > 100
+
+
+def test_a_name_stands_once_and_every_file_in_the_folder_of_its_kind():
+    """One folder deep, with nothing beside the descriptions: what stands elsewhere has no name."""
+    assert len(set(library_names())) == len(library_names())
+    assert sorted(library_folder().rglob("*.yaml")) == sorted(library_files())
+    assert {path.name for path in library_folder().iterdir() if path.is_dir()} == set(KINDS)
+    kinds = {"arms": Robot, "hands": Robot, "mechanisms": Mechanism, "bases": WheeledBase}
+    for path in library_files():
+        assert isinstance(load_any(path.stem), kinds[path.parent.name])
+
+
+@pytest.mark.parametrize("name", ["arms", "hands", "arms\\puma560", ".", "..", "*", "puma560.", "-"])
+def test_a_folder_is_no_name(name):
+    with pytest.raises(InputError, match=r"in the library|no such file"):
+        load_any(name)
 
 
 @pytest.mark.parametrize(
@@ -62,7 +82,7 @@ def test_what_has_a_slash_or_an_ending_is_a_path(name, path):
 
 @pytest.mark.parametrize(
     ("name", "near"),
-    [("puma56", "puma560"), ("PUMA560", "puma560"), ("puma 560", "puma560"), ("stanfrod", "stanford"),
+    [("puma56", "puma560"), ("PUMA56", "puma560"), ("puma 560", "puma560"), ("stanfrod", "stanford"),
      ("fourbar", "four-bar"),
      ("scra", "scara")],
 )  # fmt: skip
