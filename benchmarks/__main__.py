@@ -4,18 +4,33 @@ from __future__ import annotations
 
 import sys
 
-from benchmarks import forward, inverse, machine, mobility, names, nearest, pipes, redundant, start, workspace
+from benchmarks import (
+    flagged,
+    forward,
+    inverse,
+    machine,
+    mobility,
+    names,
+    nearest,
+    pipes,
+    plausibility,
+    redundant,
+    start,
+    workspace,
+)
 
 BENCHMARKS = {
     "forward": forward.run,
     "pipes": pipes.run,
     "inverse": inverse.run,
+    "flagged": flagged.run,
     "names": names.run,
     "nearest": nearest.run,
     "redundant": redundant.counted,
     "workspace": workspace.run,
     "mobility": mobility.run,
     "start": start.run,
+    "plausibility": plausibility.run,
 }
 
 

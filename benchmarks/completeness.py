@@ -1,7 +1,7 @@
 """Whether "all solutions" are all: the laws of inverse kinematics on round, singular and random poses, counted.
 
 `python -m benchmarks.completeness` takes some minutes; `--full` takes 500 poses of each library arm and 100 of each of
-1,000 random chains. `--arms xarm6,piper` and `--failures FILE` show what breaks where.
+1,000 random chains. `--arms xarm6,piper-old` and `--failures FILE` show what breaks where.
 """
 
 from __future__ import annotations

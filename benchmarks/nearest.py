@@ -24,10 +24,11 @@ TWIST = 0.01
 """How far a target is from the pose of its configuration [rad | size]."""
 
 ARMS = (
-    "scara", "adept-one", "planar3r", "stanford-rtb", "scorbot", "thumb", "anthropomorphic", "puma560", "gp8", "z1",
-    "ur5e", "cr5", "xarm6", "piper", "hc10", "crx10ia", "yam", "viperx300s", "kr210-r2700", "tx2-60", "r2000ic-210l",
-    "lrmate200id", "xmate-sr3", "j2n6s200", "gen3-lite", "raghavan-roth-1990", "raghavan-roth-rprrpr", "panda", "fr3",
-    "gen3", "gen72", "iiwa14", "yumi-left", "yumi-right", "r1pro-left", "openarm-left", "rizon4", "planar2r",
+    "scara", "adept-one", "planar3r", "stanford-arte", "scorbot", "thumb", "anthropomorphic", "puma560", "gp8", "z1",
+    "ur5e", "cr5", "xarm6", "piper-old", "hc10", "crx10ia", "yam", "viperx300s", "kr210-r2700", "tx2-60",
+    "r2000ic-210l", "lrmate200id", "xmate-sr3", "j2n6s200", "gen3-lite", "raghavan-roth-1990", "raghavan-roth-rprrpr",
+    "panda", "fr3", "gen3", "gen72", "iiwa14", "yumi-left", "yumi-right", "r1pro-left", "openarm-left", "rizon4",
+    "planar2r",
 )  # fmt: skip
 """Library arms with two to seven joints, of every family."""
 

@@ -28,9 +28,9 @@ from numpy.typing import NDArray
 from robokin.inverse.elimination import choose_splits, elimination_of, generic_count, trial_poses
 from robokin.inverse.loop import Loop, loop_of
 from robokin.inverse.newton import closing_at
-from robokin.inverse.numeric import error_and_jacobian
 from robokin.inverse.padding import Padded, joint_frames_of, padded_chains
 from robokin.inverse.parallel import ThreeParallel
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.inverse.spherical import SphericalTriple
 from robokin.inverse.three_prismatic import ThreePrismatic
 from robokin.kinematics.chain import Chain, chain_of, chain_size, exact, z_to

@@ -20,6 +20,7 @@ listed for different values of those, two may have one name.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -50,7 +51,7 @@ def branch_names(robot: Robot, q: Array, index: Index | None = None) -> list[str
         return []
     window, postures = _postures(robot)
     part = slice(window.first, window.last)
-    axes = postures.axes(np.asarray(q[:, part], dtype=np.float64))
+    axes = postures.axes(np.asarray((q * robot.senses)[:, part], dtype=np.float64))
     # A bit for each sign: configurations with one code have one name.
     code = np.zeros(len(q), dtype=np.intp)
     for bit, sign in enumerate(postures.signs):
@@ -95,7 +96,10 @@ def _postures(robot: Robot) -> tuple[Window, Postures]:
         window = analysis.window
         if window.last - window.first > 6:
             window = Window(0, 0, window.dimension)
-        kept = _kept[robot] = window, postures_of(window_chain(chain_of(robot), window))
+        # Up is up whichever way a variable counts: the axes are those of the table.
+        plain = replace(robot, rows=tuple(replace(row, sense=1) for row in robot.rows))
+        chain = chain_of(robot if np.all(robot.senses > 0.0) else plain)
+        kept = _kept[robot] = window, postures_of(window_chain(chain, window))
     return kept
 
 

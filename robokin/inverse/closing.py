@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from robokin.inverse.analysis import Analysis
 from robokin.inverse.closest import MoreStarts, initial_guesses, nearest_configurations
-from robokin.inverse.numeric import error_and_jacobian
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.inverse.position_first import Ways
 from robokin.inverse.second_order import go_down
 from robokin.inverse.verify import CLOSES, Found, nothing

@@ -12,48 +12,59 @@ Here x are joint values [rad | size] and lengths are in the arm's size.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.curve_tracing import Curve
 from robokin.inverse.null_motion import ZERO, errors
-from robokin.inverse.track import Track, least
+from robokin.inverse.track import Tracks, least
 from robokin.kinematics.chain import Chain
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 NEAR = 0.1
 """Singular value at a point of a curve below which it may vanish before the next: it changes by less on the way."""
 
 
-def crossings(curves: list[Curve], chain: Chain, T: Array, size: float) -> Array:
-    """Configurations (k, n) [rad | m] at which other curves at T (4, 4) may cross these; an arm has one joint to spare
-    at most."""
+def crossings(curves: Sequence[Curve], chain: Chain, T: Array, size: float) -> tuple[Index, Array]:
+    """Configurations (k, n) [rad | m] at which other curves may cross some, with their numbers (k,).
+
+    T: (c, 4, 4) the poses of the curves; an arm has one joint to spare at most.
+    """
+    chosen = np.array([i for i, one in enumerate(curves) if one.closed and one.dimension == 1], dtype=np.intp)
+    nowhere = np.empty(0, dtype=np.intp), np.empty((0, chain.n))
+    if not len(chosen):
+        return nowhere
     free = np.tile([-np.inf, np.inf], (chain.n, 1))
-    found = [_on(Track(curve, chain, T, free, size)) for curve in curves if curve.closed and curve.dimension == 1]
-    return np.concatenate([np.empty((0, chain.n)), *found])
+    tracks = Tracks([curves[i] for i in chosen], chain, T[chosen], free, size)
 
-
-def _on(track: Track) -> Array:
-    """The crossings (k, n) [rad | m] on one closed curve."""
-
-    def values(x: Array) -> Array:
-        _, J = errors(track.chain, np.broadcast_to(track.T, (len(x), 4, 4)), x, track.size)
+    def values(k: Index, x: Array) -> Array:
+        _, J = errors(chain, tracks.T[k], x, size)
         return np.asarray(np.linalg.svd(J, compute_uv=False))
 
-    sampled = values(track.points[:-1])
-    rank = int(np.max(np.sum(sampled > ZERO, axis=1)))
-    if rank == 0 or (track.chain.n > 6 and rank < 6):
-        return np.empty((0, track.chain.n))
+    k = tracks.of_points
+    sampled = values(k, tracks.points)
+    rank = np.maximum.reduceat(np.sum(sampled > ZERO, axis=1), tracks.first)
+    watched = (rank > 0) & ((chain.n <= 6) | (rank == 6))
 
-    def second(x: Array) -> Array:
-        return np.asarray(values(x)[:, rank - 1])
+    def second(k: Index, x: Array) -> Array:
+        return np.asarray(values(k, x)[np.arange(len(x)), rank[k] - 1])
 
-    value = sampled[:, rank - 1]
-    low = np.flatnonzero((value <= np.roll(value, 1)) & (value <= np.roll(value, -1)) & (value < NEAR))
-    ends = np.stack([low - 1.0, low, low, low + 1.0], axis=1).reshape(-1, 2)
-    if not len(ends):
-        return np.empty((0, track.chain.n))
-    places, _ = least(track, ends[:, 0], ends[:, 1], second)
-    x = track.at(places)
-    return np.asarray(x[second(x) <= ZERO] * track.scale)
+    value = sampled[np.arange(len(k)), rank[k] - 1]
+    # The last point of each curve is the first one again.
+    end = tracks.first + tracks.last
+    inner = np.setdiff1d(np.arange(len(k)), end)
+    before, after = value[inner - 1], value[inner + 1]
+    at_first = np.searchsorted(inner, tracks.first)
+    before[at_first] = value[end - 1]
+    low = inner[(value[inner] <= before) & (value[inner] <= after) & (value[inner] < NEAR) & watched[k[inner]]]
+    if not len(low):
+        return nowhere
+    of, place = np.repeat(k[low], 2), np.repeat((low - tracks.first[k[low]]).astype(np.float64), 2)
+    start = place - np.tile([1.0, 0.0], len(low))
+    places, lowest = least(tracks, of, start, start + 1.0, lambda _, k, x: second(k, x), NEAR)
+    zero = lowest <= ZERO
+    return chosen[of[zero]], tracks.at(of[zero], places[zero]) * tracks.scale

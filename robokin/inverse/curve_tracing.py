@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.fronts import REACH, Fronts
+from robokin.inverse.fronts import REACH, TRIAL_STEPS, Fronts
 from robokin.inverse.null_motion import (
     CLOSES,
     coaxial_line,
@@ -26,12 +26,6 @@ from robokin.kinematics.chain import Chain
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-
-TRIAL_STEPS = 8
-"""Steps that show whether a curve leads away from its seed: unhindered it is 0.8 away [rad | size] by then."""
-
-AWAY = 0.2
-"""How far [rad | size] a curve must lead: the third order of a root of four solutions leaves an error of 1e-7 there."""
 
 BESIDE = 0.05
 """How far from the polyline a point of the curve can be [rad | size]; a chord of LONGEST is off by 0.01."""
@@ -79,13 +73,14 @@ def trace_many(
     size: float,
     locked: Flags | None = None,
     bounds: Array | None = None,
-) -> list[Curve]:
+    trial: Flags | None = None,
+) -> list[Curve | None]:
     """The curves through x (s, n) at poses T (s, 4, 4) along ways (s, n), with joints locked (s, n) or none.
 
-    x: [rad | size]; bounds: (n, 2) [rad | m], beyond which a curve is not followed.
+    x: [rad | size]; bounds: (n, 2) [rad | m], beyond which a curve is not followed; trial: (s,) for which it is not
+    known whether a curve leads away from x: where none does there is None.
     """
     s, n = x.shape
-    scale = scale_of(chain, size)
     locked = np.zeros((s, n), dtype=bool) if locked is None else locked
     _, J = errors(chain, T, x, size)
     lines = [coaxial_line(J[i], ways[i]) for i in range(s)]
@@ -96,13 +91,10 @@ def trace_many(
     rest = np.array([i for i, curve in enumerate(curves) if curve is None], dtype=np.intp)
     if len(rest):
         fronts = Fronts(chain, T[rest], x[rest], ways[rest], size, locked[rest], bounds)
-        fronts.run()
+        fronts.run(np.zeros(len(rest), dtype=bool) if trial is None else trial[rest])
         for place, i in enumerate(rest):
-            curves[i] = _followed(fronts, place)
-    return [
-        curve if curve is not None else Curve(row[None] * scale, way[None], scale, False, "lost")
-        for curve, row, way in zip(curves, x, ways, strict=True)
-    ]
+            curves[i] = None if fronts.stays[place] else _followed(fronts, place)
+    return curves
 
 
 def leads_away(chain: Chain, T: Array, x: Array, ways: Array, size: float, locked: Flags | None = None) -> Flags:
@@ -115,10 +107,7 @@ def leads_away(chain: Chain, T: Array, x: Array, ways: Array, size: float, locke
     fronts = Fronts(chain, T, x, ways, size, np.zeros(x.shape, dtype=bool) if locked is None else locked, None)
     for _ in range(TRIAL_STEPS):
         fronts.advance()
-    far = np.zeros(2 * len(x))
-    for rows, points, _ in fronts.history:
-        far[rows] = np.maximum(far[rows], np.linalg.norm(points - fronts.seeds[0][rows], axis=1))
-    return np.asarray(fronts.closed | (np.max(far.reshape(2, -1), axis=0) >= AWAY))
+    return fronts.away()
 
 
 def _line(chain: Chain, T: Array, x: Array, line: Array, size: float, bounds: Array | None) -> Curve | None:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.nearest_member import nearest_on
-from robokin.inverse.numeric import descend, pose_error
+from robokin.inverse.numeric import descend
+from robokin.inverse.pose_error import pose_error
 from robokin.inverse.solution_sets import families
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import CLOSES

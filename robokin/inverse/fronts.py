@@ -77,6 +77,12 @@ REACH = 20.0
 MOST_STEPS = 500
 """Steps each way at most: curves of some 70 rad. Closed ones take some 60, and more where they pass crossings."""
 
+TRIAL_STEPS = 8
+"""Steps that show whether a curve leads away from its seed: unhindered it is 0.8 away [rad | size] by then."""
+
+AWAY = 0.2
+"""How far [rad | size] a curve must lead: the third order of a root of four solutions leaves an error of 1e-7 there."""
+
 MEETS = 0.2
 """Fronts nearer than this part of a step that face each other have met, if a landing confirms it."""
 
@@ -105,7 +111,7 @@ class Fronts:
         self.bend = np.zeros_like(self.x)
         self.alive = np.ones(2 * self.s, dtype=bool)
         self.count = np.zeros(2 * self.s, dtype=np.intp)
-        self.closed = np.zeros(self.s, dtype=bool)
+        self.closed, self.stays = np.zeros(self.s, dtype=bool), np.zeros(self.s, dtype=bool)
         self.ended = [""] * (2 * self.s)
         self.history: list[tuple[Index, Array, Array]] = []
         self.locks = np.where(np.concatenate([locked, locked])[:, :, None], np.eye(self.n), 0.0)
@@ -122,14 +128,24 @@ class Fronts:
         self.steps = SLOW_STEPS if np.any(values <= THIN) else STEPS
         self.h = np.where(values > THIN, np.clip(2.0 * values, APPROACH, FIRST), FIRST)
 
-    def run(self) -> None:
-        """Follow all curves to their ends."""
-        for _ in range(MOST_STEPS):
+    def run(self, trial: Flags) -> None:
+        """Follow all curves to their ends, but for those on trial (s,) that do not lead away from their seeds."""
+        for step in range(MOST_STEPS):
             if not self.alive.any():
                 return
+            if step == TRIAL_STEPS:
+                self.stays = trial & ~self.away()
+                self.alive &= ~np.tile(self.stays, 2)
             self.advance()
         for row in np.flatnonzero(self.alive):
             self.ended[row] = "lost"
+
+    def away(self) -> Flags:
+        """(s,) which curves have led away from their seeds."""
+        far = np.zeros(2 * self.s)
+        for rows, points, _ in self.history:
+            far[rows] = np.maximum(far[rows], np.linalg.norm(points - self.seeds[0][rows], axis=1))
+        return np.asarray(self.closed | (np.max(far.reshape(2, -1), axis=0) >= AWAY))
 
     def advance(self) -> None:
         """One step of every front that has not come to its end."""

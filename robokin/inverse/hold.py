@@ -164,12 +164,12 @@ def _held(robot: Robot, hold: dict[int, float]) -> HeldArm:
 
 def _standing(row: Joint, value: float, convention: str) -> Joint:
     """A row as a fixed one, its joint standing at a value [rad | m]."""
-    moved = row.offset + value
+    moved = row.offset + row.sense * value
     turns = row.type is JointType.REVOLUTE
-    fixed = replace(row, type=JointType.FIXED, offset=0.0, limits=(-np.inf, np.inf), texts=())
+    fixed = replace(row, type=JointType.FIXED, offset=0.0, limits=(-np.inf, np.inf), texts=(), sense=1)
     if convention != "frames":
         return replace(fixed, theta=row.theta + moved) if turns else replace(fixed, d=row.d + moved)
-    before, after = row_constants(row, convention)
+    before, after = row_constants(replace(row, sense=1), convention)
     motion = rotation_transform([0.0, 0.0, 1.0], moved) if turns else np.eye(4)
     motion[2, 3] += 0.0 if turns else moved
     return replace(fixed, origin=before @ motion @ after, axis=None)

@@ -4,7 +4,9 @@ Statement. A loop has a generic number N of complex solutions: no target has mor
 all N are known as many paths lead to any other. Where each of them ends in a regular solution, in a singular one or at
 infinity, all regular solutions have been found, also where the arm is singular.
 Derivation. Near the target of a regular solution all targets have one close by, so that it is where one of the N paths
-from a start in general position ends. Regular ends are then all regular solutions.
+from a start in general position ends. Regular ends are then all regular solutions. Where all N are known at a pose
+close by (`starts_close_by`) the way from there takes a third of the steps; bent into the complex (`paths`), it misses
+the targets at which solutions meet as one from a complex start does.
 Degenerate case. Two paths may pass so near to each other that a step goes over to the wrong one; then both end alike,
 and a regular solution is missing. An account is closed only where two starts, with other targets and so other paths,
 agree. For a real target the conjugates of solutions are solutions: this is checked as well.
@@ -18,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,9 +30,14 @@ from robokin.inverse.loop import Loop
 from robokin.inverse.monodromy import Known, Start, another_start, started, two_starts
 from robokin.inverse.newton import refine
 from robokin.inverse.paths import NEAR, Points, distance, points_of, track
+from robokin.inverse.starts_close_by import Beside
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.intp]
+
+BENDS = np.exp(1.3j), np.exp(1.0j)
+"""γ of the ways from two targets close by: they go around what is between them and the target, at about a right angle.
+Not one the conjugate of the other, which would lead to the conjugate paths."""
 
 REGULAR = 1e-5
 """Least singular value of S above which an end is regular: two solutions that are about as far apart meet at targets
@@ -157,12 +165,32 @@ class _Ends:
         return _Ends(*(getattr(self, one.name)[part] for one in fields(self)))
 
 
+class _Begun(NamedTuple):
+    """Where the paths to some targets begin.
+
+    chosen: (m,) the targets; point: (m,) points; values: (6, m, N) the solutions there [rad | size]; bend: γ.
+    """
+
+    chosen: Index
+    point: Points
+    values: Complex
+    bend: complex
+
+
 class Homotopy:
     """What follows the paths of a loop. Starts are made when they are first needed, and kept."""
 
-    def __init__(self, loop: Loop, known: Callable[[], list[Known]] | None = None) -> None:
-        """`known` gives all solutions at two targets, if another solver can: a start is then one track away."""
-        self.loop, self._known = loop, known
+    def __init__(
+        self,
+        loop: Loop,
+        known: Callable[[], list[Known]] | None = None,
+        beside: Callable[[Array], Beside] | None = None,
+    ) -> None:
+        """`known` gives all solutions at two targets, if another solver can: a start is then one track away.
+
+        `beside` gives all those at two targets close to each of some, as far as it can, which makes short ways.
+        """
+        self.loop, self._known, self._beside = loop, known, beside
         self._starts: list[Start] = []
 
     @cached_property
@@ -182,20 +210,46 @@ class Homotopy:
         return number
 
     def account(self, closing: Array, most: int = 4) -> Account:
-        """Follow all paths to L6 (m, 4, 4) from two starts, and from more, up to `most`, where these do not agree.
+        """Follow all paths to L6 (m, 4, 4) from two starts, and from more, where these do not agree.
 
-        Raises ValueError where the number of solutions is not known.
+        These are two targets close by where all solutions are known, else two complex ones that serve for all; then
+        further ones of these, up to `most`. Raises ValueError where the number of solutions is not known.
         """
         if self.count is None:
             raise ValueError("the number of complex solutions of this arm could not be established")
-        tried = self._ends(closing, range(2), np.arange(len(closing)))
-        verdict = _judged(self.loop, self.count, len(closing), tried)
-        for k in range(2, most):
-            if verdict.closed.all() or self._start(k) is None:
-                break
-            tried += self._ends(closing, range(k, k + 1), np.flatnonzero(~verdict.closed))
-            verdict = _judged(self.loop, self.count, len(closing), tried)
+        m = len(closing)
+        begun = self._close_by(closing)
+        used = np.full(m, 2)
+        for one in begun:
+            used[one.chosen] = 0
+        begun += [self._far(k, np.flatnonzero(used == 2)) for k in range(2)]
+        tried = self._ends(closing, begun)
+        verdict = _judged(self.loop, self.count, m, tried)
+        for k in (0, *range(2, most)):
+            # After starts close by two that serve for all, thereafter one more.
+            starts = range(2) if k == 0 else range(k, k + 1)
+            open_ = np.flatnonzero(~verdict.closed & (used == k))
+            if len(open_) and all(self._start(i) is not None for i in starts):
+                tried += self._ends(closing, [self._far(i, open_) for i in starts])
+                verdict = _judged(self.loop, self.count, m, tried)
+                used[open_] = starts.stop
         return _with_seeds_refined(self.loop, closing, verdict)
+
+    def _close_by(self, closing: Array) -> list[_Begun]:
+        """Starts for those of the targets beside which all solutions are known at two poses."""
+        found = None if self._beside is None else self._beside(closing)
+        if found is None or not len(found.chosen) or found.values.shape[2] != self.count:
+            return []
+        return [
+            _Begun(found.chosen, points_of(near), np.ascontiguousarray(values.transpose(2, 0, 1)), bend)
+            for near, values, bend in zip(found.closing, found.values, BENDS, strict=True)
+        ]
+
+    def _far(self, k: int, chosen: Index) -> _Begun:
+        """Start k for some targets (m,)."""
+        start = self._starts[k]
+        many = np.broadcast_to(start.values[:, None], (6, len(chosen), start.values.shape[1]))
+        return _Begun(chosen, start.point.pick(np.zeros(len(chosen), dtype=np.intp)), many, 1.0)
 
     def _start(self, k: int) -> Start | None:
         """Start k, from 0: the first two are independent, further ones are reached from the first, if they are."""
@@ -206,17 +260,18 @@ class Homotopy:
             self._starts.append(more)
         return self._starts[k]
 
-    def _ends(self, closing: Array, starts: range, chosen: Index) -> list[_Ends]:
-        """The ends of the paths from each of some starts to the chosen targets, all followed together."""
-        loop, every = self.loop, [self._starts[k] for k in starts]
-        N = every[0].values.shape[1]
-        target = np.tile(np.repeat(chosen, N), len(every))
-        home = [start.point.pick(np.zeros(N * len(chosen), dtype=np.intp)) for start in every]
-        from_all = Points(
-            np.concatenate([point.r for point in home], axis=1), np.concatenate([point.p for point in home], axis=1)
+    def _ends(self, closing: Array, begun: list[_Begun]) -> list[_Ends]:
+        """The ends of the paths from some starts, all followed together."""
+        loop = self.loop
+        N = begun[0].values.shape[2]
+        target = np.concatenate([np.repeat(one.chosen, N) for one in begun])
+        bend = np.concatenate([np.full(N * len(one.chosen), one.bend, dtype=np.complex128) for one in begun])
+        home = Points(
+            np.concatenate([np.repeat(one.point.r, N, axis=1) for one in begun], axis=1),
+            np.concatenate([np.repeat(one.point.p, N, axis=1) for one in begun], axis=1),
         )
-        at = np.concatenate([np.tile(start.values, (1, len(chosen))) for start in every], axis=1)
-        ends = track(loop, from_all, points_of(closing).pick(target), at)
+        at = np.concatenate([one.values.reshape(6, -1) for one in begun], axis=1)
+        ends = track(loop, home, points_of(closing).pick(target), at, bend)
         values = np.ascontiguousarray(ends.values.T)
         # Paths left shortly before a nearly singular solution may still reach it: all that came near the end are tried.
         late = np.flatnonzero(~ends.lost & (ends.u < LATE))
@@ -233,7 +288,8 @@ class Homotopy:
         singular = ~whole & ~infinite & ~lost
         fine = _told_apart(loop, closing, target, values, whole, np.flatnonzero(singular & (ends.u < LATE)))
         everything = _Ends(target, values, whole, singular, infinite, lost, *fine)
-        return [everything.part(slice(k * N * len(chosen), (k + 1) * N * len(chosen))) for k in range(len(every))]
+        last = np.cumsum([N * len(one.chosen) for one in begun]).tolist()
+        return [everything.part(slice(end - N * len(one.chosen), end)) for one, end in zip(begun, last, strict=True)]
 
 
 def _told_apart(

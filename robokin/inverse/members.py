@@ -11,19 +11,19 @@ Without a wish the member of a wrist's self-motion is the one with its first joi
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.curve_tracing import Curve
-from robokin.inverse.nearest_member import member_near, nearest_on
+from robokin.inverse.nearest_member import members_near, nearest_on_each
 from robokin.inverse.null_motion import ZERO, errors
-from robokin.inverse.numeric import error_and_jacobian
-from robokin.inverse.self_motion import classify
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.inverse.solution_sets import families
 from robokin.inverse.spherical import SphericalTriple
-from robokin.inverse.verify import CLOSES, Found, within_limits
+from robokin.inverse.verify import CLOSES, Found, with_ones_within, within_limits
 from robokin.inverse.window import least_singular_values
 from robokin.kinematics.chain import Chain
 
@@ -88,13 +88,35 @@ def listed_once(
     limits: Array,
     rest: Array,
     near: Array | None,
+    known: Mapping[int, Sequence[Curve]] | None = None,
 ) -> tuple[Found, dict[int, list[Motion]], Index, Index]:
     """Solutions (s, n) of targets T (m, 4, 4), sorted, with each self-motion and each multiple root once.
 
-    limits: (n, 2) [rad | m]; rest: (n,) the wish where there is no `near` (n,). Also the self-motions of each target,
+    limits: (n, 2) [rad | m]; rest: (n,) the wish where there is no `near` (n,); known: self-motions of targets, by
+    their numbers, that were followed before. Also the self-motions of each target,
     and the targets (k,) of which a solution is singular and neither double nor on a self-motion: others may be so near
     to it that they were not told apart; and how many (m,) were left out beside another one, as if the two were double.
     """
+    listed, motions, unclear, beside = _once(chain, solver, T, found, size, limits, rest, near, known)
+    # Of roots that joint values hardly tell apart another one may stand outside the limits for one within; and a
+    # self-motion may be within them in no more than the configuration that was found.
+    listed, again = with_ones_within(listed, found, chain.revolute, limits, size)
+    unclear = np.union1d(unclear, again)
+    return listed, motions, unclear, beside
+
+
+def _once(
+    chain: Chain,
+    solver: object,
+    T: Array,
+    found: Found,
+    size: float,
+    limits: Array,
+    rest: Array,
+    near: Array | None,
+    known: Mapping[int, Sequence[Curve]] | None,
+) -> tuple[Found, dict[int, list[Motion]], Index, Index]:
+    """`listed_once`, whatever the limits say of those that are left out."""
     least = least_singular_values(chain, found.q, size)
     found, least = _thinned(chain, found, least, size)
     singular = np.flatnonzero(least < ZERO)
@@ -102,18 +124,18 @@ def listed_once(
         return found, {}, np.empty(0, dtype=np.intp), np.zeros(len(T), dtype=np.intp)
     q, index = found.q.copy(), found.index
     position, angle = found.position.copy(), found.angle.copy()
-    local = classify(chain, T[index[singular]], q[singular], size)
+    sets = families(chain, T, q[singular], size, index[singular], known)
+    local = sets.local
     # On the way to a multiple root that the target only nearly has, a solution is better left where it is.
     there, _ = error_and_jacobian(chain, T[index[singular]], local.q, size)
     position[singular], angle[singular], moved = _better(position[singular], angle[singular], there, size)
     q[singular] = np.where(moved[:, None], local.q, q[singular])
-    sets = families(chain, T, q[singular], size, index[singular], local)
     keep = np.ones(len(found), dtype=bool)
     # Of a target with more sets than are followed the members of the others are left out; it is said that some are.
     unfollowed = (sets.of < 0) & (local.dimension > 0) & np.isin(index[singular], np.array([*sets.open], dtype=np.intp))
     keep[singular[unfollowed]] = False
-    motions: dict[int, list[Motion]] = {}
     stands: list[np.intp] = []
+    curves: list[Curve] = []
     lost: list[np.intp] = []
     for i in np.unique(index[singular]):
         mine = np.flatnonzero(index[singular] == i)
@@ -128,15 +150,18 @@ def listed_once(
                     # No set of solutions but a valley, in which the error nearly vanishes: what settled is alone.
                     sets.of[mine[sets.of[mine] == number]] = -1
                     continue
-            # The most exact member comes first.
-            members = members[np.argsort(np.maximum(position[members] / size, angle[members]), kind="stable")]
-            chosen = _member(chain, solver, T[i], curve, q[members], size, limits, rest, near)
             keep[members] = False
-            keep[members[0]] = True
-            q[members[0]] = chosen
-            stands.append(members[0])
-            motions.setdefault(int(i), []).append(Motion(curve, chosen))
-    off, _ = error_and_jacobian(chain, T[index[stands]], q[stands], size)
+            # The most exact member stands for all.
+            first = members[np.argmin(np.maximum(position[members] / size, angle[members]))]
+            keep[first] = True
+            stands.append(first)
+            curves.append(curve)
+    motions: dict[int, list[Motion]] = {}
+    targets = index[stands]
+    q[stands] = _members(chain, solver, T[targets], curves, q[stands], size, limits, rest, near)
+    for i, curve, chosen in zip(targets.tolist(), curves, q[stands], strict=True):
+        motions.setdefault(i, []).append(Motion(curve, chosen))
+    off, _ = error_and_jacobian(chain, T[targets], q[stands], size)
     position[stands], angle[stands] = np.linalg.norm(off[:, :3], axis=1) * size, np.linalg.norm(off[:, 3:], axis=1)
     alone = sets.of < 0
     least[singular] = least_singular_values(chain, q[singular], size)
@@ -161,7 +186,8 @@ def listed_once(
 def _thinned(chain: Chain, found: Found, least: Array, size: float) -> tuple[Found, Array]:
     """The solutions, and their least singular values, without those beside another one that tell nothing new.
 
-    Next to a singular solution many are found that have not settled, or that lie on one self-motion.
+    Next to a singular solution many are found that have not settled, or that lie on one self-motion. Of those that
+    have settled the most singular one stays: a member of a self-motion closes no better than what is beside it.
     """
     off = np.maximum(found.position / size, found.angle)
     scale = np.where(chain.revolute, 1.0, size)
@@ -169,7 +195,7 @@ def _thinned(chain: Chain, found: Found, least: Array, size: float) -> tuple[Fou
     rows = np.flatnonzero(least < SLOW)
     for target in np.unique(found.index[rows]):
         mine = rows[found.index[rows] == target]
-        mine = mine[np.argsort(off[mine], kind="stable")]
+        mine = mine[np.lexsort((least[mine], np.maximum(off[mine], SETTLED)))]
         x = found.q[mine] / scale
         gap = x[:, None] - x[None]
         gap = np.max(np.abs(np.where(chain.revolute, gap - TURN * np.round(gap / TURN), gap)), axis=2)
@@ -237,36 +263,46 @@ def _better(position: Array, angle: Array, there: Array, size: float) -> tuple[A
     return np.where(moved, new_position, position), np.where(moved, new_angle, angle), moved
 
 
-def _member(
+def _members(
     chain: Chain,
     solver: object,
     T: Array,
-    curve: Curve,
-    members: Array,
+    curves: list[Curve],
+    known: Array,
     size: float,
     limits: Array,
     rest: Array,
     near: Array | None,
 ) -> Array:
-    """The member (n,) of a set that stands for it."""
+    """The members (k, n) of sets at T (k, 4, 4) that stand for them, of each of which one (k, n) is known."""
+    chosen: list[Array | None] = [None] * len(curves)
+    wish = rest if near is None else near
+    if near is None and isinstance(solver, SphericalTriple):
+        for k, curve in enumerate(curves):
+            chosen[k] = _wrist_held(chain, solver.first, curve, known[k], limits, rest)
+        chosen = _closing(chain, T, chosen, size)
     anywhere = np.tile([-np.inf, np.inf], (chain.n, 1))
-    if near is not None:
-        chosen = nearest_on(curve, chain, T, near, limits, size)
-    else:
-        first = solver.first if isinstance(solver, SphericalTriple) else None
-        chosen = None if first is None else _wrist_held(chain, first, curve, members[0], limits, rest)
-        if chosen is None or not _closes(chain, T, chosen, size):
-            chosen = member_near(curve, chain, T, rest, limits, size)
-    if chosen is None:
-        chosen = member_near(curve, chain, T, rest if near is None else near, anywhere, size)
+    for ask, within in ((members_near if near is None else nearest_on_each, limits), (members_near, anywhere)):
+        open_ = [k for k, member in enumerate(chosen) if member is None]
+        if open_:
+            found = ask([curves[k] for k in open_], chain, T[open_], wish, within, size)
+            for k, member in zip(open_, found, strict=True):
+                chosen[k] = member
     # Of a set that the target only nearly has, what was found is nearer to it than what was followed.
-    return members[0] if chosen is None or not _closes(chain, T, chosen, size) else chosen
+    members = [known[k] if one is None else one for k, one in enumerate(_closing(chain, T, chosen, size))]
+    return np.array(members).reshape(-1, chain.n)
 
 
-def _closes(chain: Chain, T: Array, q: Array, size: float) -> bool:
-    """Whether a configuration (n,) reaches T (4, 4) as nearly as a solution must."""
-    error = error_and_jacobian(chain, T[None], q[None], size)[0][0]
-    return float(max(np.linalg.norm(error[:3]), np.linalg.norm(error[3:]))) <= CLOSES
+def _closing(chain: Chain, T: Array, members: list[Array | None], size: float) -> list[Array | None]:
+    """Those configurations (n,) that reach their T (k, 4, 4) as nearly as a solution must, None for the others."""
+    given = [k for k, member in enumerate(members) if member is not None]
+    q = np.array([members[k] for k in given]).reshape(-1, chain.n)
+    error, _ = error_and_jacobian(chain, T[given], q, size)
+    off = np.maximum(np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1))
+    out: list[Array | None] = [None] * len(members)
+    for k, member, left in zip(given, q, off.tolist(), strict=True):
+        out[k] = member if left <= CLOSES else None
+    return out
 
 
 def _flat(chain: Chain, T: Array, curve: Curve, size: float) -> bool:

@@ -13,12 +13,16 @@ Degenerate case. Of a target whose curves have no end nothing is vouched for.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.curve_crossings import crossings
+from robokin.inverse.curve_tracing import Curve
 from robokin.inverse.members import Motion, listed_once
-from robokin.inverse.numeric import descend, error_and_jacobian
+from robokin.inverse.numeric import descend
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.inverse.solution_sets import families, on_curve, turned_gap
 from robokin.inverse.verify import CLOSES, Found, merged
 from robokin.kinematics.chain import Chain
@@ -33,8 +37,8 @@ ROUNDS = 4
 GUESSES = 64
 """Random configurations that steps are made from: of those that end, from one in ten to nearly all end on a curve."""
 
-GUESS_STEPS = 40
-"""Steps from each: those that end take some fifteen."""
+GUESS_STEPS = 30
+"""Steps from each: those that end take some fifteen, and one in fifty more than this."""
 
 KNOWN = 1e-2
 """A configuration that ends nearer [rad | size] to a listed one was on the way to it, if that counts many times."""
@@ -63,21 +67,26 @@ def listed_with_more(
     growing = sorted({*motions, *searched.tolist()})
     ends = _searched(chain, T[searched], size)
     for step in range(ROUNDS):
-        seeds = {}
-        for i in growing:
-            parts = [_crossing(chain, T[i], motions.get(i, []), size)]
-            if step == 0 and i in searched:
-                mine = ends.q[ends.index == np.searchsorted(searched, i)]
-                parts.append(_new(chain, T[i], mine, found.q[found.index == i], motions.get(i, []), size))
-            seeds[i] = np.concatenate(parts)
-        targets = np.array([i for i in growing if len(seeds[i])], dtype=np.intp)
+        curves = _crossing(chain, T, motions, growing, size)
+        seeds = {i: _amid(chain, some) for i, some in curves.items()}
+        for i in searched.tolist() if step == 0 else ():
+            mine = ends.q[ends.index == np.searchsorted(searched, i)]
+            others = _new(chain, T[i], mine, found.q[found.index == i], motions.get(i, []), size)
+            seeds[i] = np.concatenate([seeds[i], others]) if i in seeds else others
+        targets = np.array([i for i in growing if len(seeds.get(i, ()))], dtype=np.intp)
         if not len(targets):
             return found, motions, unclear, beside
         more = _solutions(chain, T, targets, [seeds[i] for i in targets.tolist()], size)
         known = found.pick(np.isin(found.index, targets))
         both = merged(Found(np.searchsorted(targets, known.index), known.q, known.position, known.angle), more)
         both = both.pick(np.argsort(both.index, kind="stable"))
-        again, said, doubtful, near_by = listed_once(chain, solver, T[targets], both, size, limits, rest, near)
+        followed = {
+            k: [*(motion.curve for motion in motions.get(i, [])), *curves.get(i, [])]
+            for k, i in enumerate(targets.tolist())
+        }
+        again, said, doubtful, near_by = listed_once(
+            chain, solver, T[targets], both, size, limits, rest, near, followed
+        )
         number = np.bincount(again.index, minlength=len(targets)) - np.bincount(known.index, minlength=len(T))[targets]
         # A new self-motion may have taken up solutions that seemed to stand alone.
         new = [len(said.get(k, ())) > len(motions.get(i, ())) for k, i in enumerate(targets.tolist())]
@@ -95,14 +104,29 @@ def listed_with_more(
     return found, motions, np.union1d(unclear, np.array(growing, dtype=np.intp)), beside
 
 
-def _crossing(chain: Chain, T: Array, motions: list[Motion], size: float) -> Array:
-    """Members (k, n) [rad | m] of the curves that leave the crossings of known ones, which are among them."""
-    at = crossings([motion.curve for motion in motions], chain, T, size)
+def _crossing(
+    chain: Chain, T: Array, motions: dict[int, list[Motion]], targets: list[int], size: float
+) -> dict[int, list[Curve]]:
+    """The curves that leave the crossings of known ones, which are not among them, of some targets that have any."""
+    known = [(i, motion.curve) for i in targets for motion in motions.get(i, [])]
+    of = np.array([i for i, _ in known], dtype=np.intp)
+    which, at = crossings([curve for _, curve in known], chain, T[of], size)
     if not len(at):
-        return at
-    curves = [part for curve in families(chain, T[None], at, size).curves[0] for part in curve.sheets or (curve,)]
-    members = np.array([curve.q[int(AMID * len(curve.q))] for curve in curves]).reshape(-1, chain.n)
-    return members[~_on(chain, T, members, motions, size)]
+        return {}
+    some, index = np.unique(of[which], return_inverse=True)
+    before = {k: [motion.curve for motion in motions[i]] for k, i in enumerate(some.tolist())}
+    found = {}
+    for k, sets in enumerate(families(chain, T[some], at, size, index, before, alone=False).curves):
+        curves = [part for curve in sets[len(before[k]) :] for part in curve.sheets or (curve,)]
+        i = int(some[k])
+        new = ~_on(chain, T[i], _amid(chain, curves), motions[i], size)
+        found[i] = [curve for curve, one in zip(curves, new.tolist(), strict=True) if one]
+    return found
+
+
+def _amid(chain: Chain, curves: Sequence[Curve]) -> Array:
+    """A member (k, n) [rad | m] of each of some curves."""
+    return np.array([curve.q[int(AMID * len(curve.q))] for curve in curves]).reshape(-1, chain.n)
 
 
 def _searched(chain: Chain, T: Array, size: float) -> Found:

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from robokin.inverse.analysis import Analysis
 from robokin.inverse.initial_guesses import between
-from robokin.inverse.numeric import descend, error_and_jacobian
+from robokin.inverse.numeric import descend
 from robokin.inverse.padding import joint_frames_of
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.inverse.verify import CLOSES, Found, closing_distances, nothing
 from robokin.kinematics.chain import Chain
 

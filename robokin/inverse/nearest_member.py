@@ -1,7 +1,7 @@
-"""The member of a self-motion that is nearest to a wish.
+"""The member of each of some self-motions that is nearest to a wish.
 
-Statement. Of the configurations of a self-motion that are within the joint limits, find that whose greatest joint move
-from a wish is least, angles turned as near to it as the limits allow.
+Statement. Of the configurations of each self-motion that are within the joint limits, find that whose greatest joint
+move from a wish is least, angles turned as near to it as the limits allow.
 Derivation. Along each piece within the limits (`arcs`) the greatest move is sampled; its least value is sought beside
 the samples that are lower than their neighbours, and at the pieces' ends. A wish that is a member itself is the answer.
 Degenerate case. On a surface steps from its known points towards the wish, within the null space, end at members that
@@ -12,6 +12,8 @@ Here x are joint values [rad | size] and lengths are in the arm's size.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,10 +22,12 @@ from robokin.inverse.curve_tracing import Curve
 from robokin.inverse.fronts import LONGEST, TURN
 from robokin.inverse.null_motion import CLOSES, ZERO, corrected, errors
 from robokin.inverse.solution_sets import on_curve, turned_gap
-from robokin.inverse.track import KINK, PARTS, Track, least
+from robokin.inverse.track import KINK, PARTS, Tracks, least
 from robokin.kinematics.chain import Chain
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Index = NDArray[np.intp]
 
 CANDIDATES = 4
 """Local minima of the move from a wish that are refined on each piece."""
@@ -59,155 +63,221 @@ def nearest_on(curve: Curve, chain: Chain, T: Array, near: Array, limits: Array,
     limits: (own, 2) of the arm's own joints; nearest by the greatest joint move, angles turned as near as the limits
     allow. None where no member is within the limits. Of a surface one that is found nearest from several guesses.
     """
-    tracks = [Track(part, chain, T, limits, size) for part in curve.sheets or (curve,)]
-    track = tracks[0]
-    itself = _itself(track, curve, near)
-    if itself is not None:
-        return itself
-    wish = near / track.scale[: track.own]
-    found = [_nearest_of_pieces(part, wish) for part in tracks]
-    if curve.sheets:
-        found.append(_nearest_on_surface(track, curve, wish))
-    rows = np.array([x for x in found if x is not None]).reshape(-1, chain.n)
+    return nearest_on_each([curve], chain, T[None], near, limits, size)[0]
+
+
+def nearest_on_each(
+    curves: Sequence[Curve], chain: Chain, T: Array, near: Array, limits: Array, size: float
+) -> list[Array | None]:
+    """`nearest_on` for each of some self-motions at T (k, 4, 4), all with the same wish `near` (own,)."""
+    whole = Tracks(curves, chain, T, limits, size)
+    answers = [_itself(whole, T[k], curve, near) for k, curve in enumerate(curves)]
+    parts = [(k, part) for k, one in enumerate(curves) if answers[k] is None for part in one.sheets or (one,)]
+    if not parts:
+        return answers
+    of = np.array([k for k, _ in parts], dtype=np.intp)
+    tracks = Tracks([part for _, part in parts], chain, T[of], limits, size)
+    wish = near / tracks.scale[: tracks.own]
+    part, x = _nearest_of_pieces(tracks, wish)
+    for k in np.unique(of).tolist():
+        mine = of[part] == k
+        rows, tracked = x[mine], part[mine]
+        if curves[k].sheets:
+            more = _nearest_on_surface(tracks, T[k], curves[k], wish)
+            rows, tracked = np.concatenate([rows, more]), np.append(tracked, np.full(len(more), np.searchsorted(of, k)))
+        if len(rows):
+            # Of a surface the points of all curves are compared as those of one.
+            best = rows[np.argmin(moves(tracks, np.full(len(rows), tracked[0]), rows, wish))]
+            answers[k] = _turned_near(tracks, best, wish)
+    return answers
+
+
+def members_near(
+    curves: Sequence[Curve], chain: Chain, T: Array, wish: Array, limits: Array, size: float
+) -> list[Array | None]:
+    """Members (own,) [rad | m] within the limits (own, 2) that are about as near to the wish (own,) as any.
+
+    One of each of some self-motions at T (k, 4, 4). It is the nearest one beside the nearest of the points that the
+    curve was followed by, which spares most of what `nearest_on` does; that is asked where none of those points is
+    within the limits.
+    """
+    answers: list[Array | None] = [None] * len(curves)
+    tracks = Tracks(curves, chain, T, limits, size)
+    inside, of = tracks.is_inside(tracks.points), tracks.of_points
+    simple = np.isin(np.arange(len(curves)), of[inside]) & np.array([not one.sheets for one in curves], dtype=bool)
+    x = wish / tracks.scale[: tracks.own]
+    usable = np.flatnonzero(inside & simple[of])
+    if len(usable):
+        far = np.full(len(of), np.inf)
+        far[usable] = moves(tracks, of[usable], tracks.points[usable], x)
+        order = np.lexsort((far, of))
+        best = order[np.searchsorted(of[order], np.flatnonzero(simple))]
+        for k, member in zip(np.flatnonzero(simple).tolist(), _beside(tracks, best, inside, x), strict=True):
+            answers[k] = _turned_near(tracks, member, x)
+    rest = np.flatnonzero(~simple)
+    if len(rest):
+        asked = nearest_on_each([curves[k] for k in rest.tolist()], chain, T[rest], wish, limits, size)
+        for k, found in zip(rest.tolist(), asked, strict=True):
+            answers[k] = found
+    return answers
+
+
+def _beside(tracks: Tracks, best: Index, inside: Flags, wish: Array) -> Array:
+    """The points (m, n) within the limits nearest to the wish beside the points `best` (m,), each of another curve."""
+    of = tracks.of_points
+    k = of[best]
+    place = best - tracks.first[k]
+    low = np.concatenate([best[place > 0] - 1, best[place < tracks.last[k]]])
+    low = low[inside[low] & inside[low + 1]]
+    rows, curve = tracks.points[best], k
+    if len(low):
+        a = (low - tracks.first[of[low]]).astype(np.float64)
+        places, _ = least(tracks, of[low], a, a + 1.0, lambda _, k, y: moves(tracks, k, y, wish))
+        found = tracks.at(of[low], places)
+        fits = tracks.is_inside(found)
+        rows, curve = np.concatenate([rows, found[fits]]), np.append(curve, of[low][fits])
+    far = moves(tracks, curve, rows, wish)
+    order = np.lexsort((far, curve))
+    nearest = rows[order[np.searchsorted(curve[order], k)]]
+    straight, on_lines = _on_lines(tracks, best, wish)
+    nearest[straight] = on_lines
+    return np.asarray(nearest)
+
+
+def _on_lines(tracks: Tracks, best: Index, wish: Array) -> tuple[Index, Array]:
+    """Which of points `best` (m,) of some curves are on straight ones, and the points (k, n) of these nearest the wish.
+
+    The greatest move along a line is a convex function: it is least beside the least of some points. The point itself
+    is the middle one of them.
+    """
+    of = tracks.of_points
+    k, t = of[best], tracks.tangents[best]
+    place = np.full(len(tracks.last), -1)
+    place[k] = np.arange(len(best))
+    mine = np.flatnonzero(place[of] >= 0)
+    bent = mine[np.max(np.abs(tracks.tangents[mine] - t[place[of[mine]]]), axis=1, initial=0.0) > STRAIGHT]
+    rows = np.flatnonzero((tracks.last[k] >= 2) & ~np.isin(k, of[bent]))
     if not len(rows):
-        return None
-    best = rows[np.argmin(moves(track, rows, wish))]
-    return np.asarray(nearest_turns(track, best[None], wish)[0, : track.own] * track.scale[: track.own])
-
-
-def member_near(curve: Curve, chain: Chain, T: Array, wish: Array, limits: Array, size: float) -> Array | None:
-    """A member (own,) [rad | m] within the limits (own, 2) that is about as near to the wish (own,) as any.
-
-    It is the nearest one beside the nearest of the points that the curve was followed by, which spares most of what
-    `nearest_on` does; that is asked where none of those points is within the limits.
-    """
-    track = Track(curve, chain, T, limits, size)
-    inside = np.flatnonzero(track.is_inside(track.points))
-    if curve.sheets or not len(inside):
-        return nearest_on(curve, chain, T, wish, limits, size)
-    x = wish / track.scale[: track.own]
-    best = int(inside[np.argmin(moves(track, track.points[inside], x))])
-    rows = track.points[best][None]
-    sides = [(i, i + 1) for i in (best - 1, best) if i >= 0 and i + 1 <= track.last]
-    sides = [side for side in sides if track.is_inside(track.points[list(side)]).all()]
-    if sides:
-        a, b = np.array(sides, dtype=np.float64).T
-        rows = np.concatenate([rows, track.at(least(track, a, b, lambda y: moves(track, y, x))[0])])
-        rows = rows[track.is_inside(rows)]
-    straight = _on_line(track, best, x)
-    if straight is not None:
-        rows = straight[None]
-    nearest = rows[np.argmin(moves(track, rows, x))]
-    return np.asarray(nearest_turns(track, nearest[None], x)[0, : track.own] * track.scale[: track.own])
-
-
-def _on_line(track: Track, best: int, wish: Array) -> Array | None:
-    """The point (n,) within the limits nearest to the wish (own,) beside point `best` of a straight curve.
-
-    None for another curve. The greatest move along a line is a convex function: it is least beside the least of some
-    points. The point itself is the middle one of them.
-    """
-    t = track.tangents[best]
-    if len(track.points) < 3 or np.max(np.abs(track.tangents - t)) > STRAIGHT:
-        return None
-    low, high, cuts = -LINE_STEP, LINE_STEP, np.linspace(0.0, 1.0, LINE_CUTS + 1)
+        return rows, np.empty((0, tracks.chain.n))
+    k, t, start = k[rows], t[rows], tracks.points[best[rows]]
+    low, high = np.full(len(rows), -LINE_STEP), np.full(len(rows), LINE_STEP)
+    cuts, every, many = np.linspace(0.0, 1.0, LINE_CUTS + 1), np.arange(len(rows)), np.repeat(k, LINE_CUTS + 1)
     for _ in range(LINE_ROUNDS):
-        parts = low + (high - low) * cuts
-        rows = track.points[best] + parts[:, None] * t
-        i = int(np.argmin(np.where(track.is_inside(rows), moves(track, rows, wish), np.inf)))
-        low, high, x = parts[max(i - 1, 0)], parts[min(i + 1, LINE_CUTS)], rows[i]
-    e, _ = errors(track.chain, track.T[None], x[None], track.size)
-    return x if track.is_inside(x[None])[0] and float(np.max(np.abs(e))) <= REACHES else None
+        parts = low[:, None] + (high - low)[:, None] * cuts
+        points = (start[:, None] + parts[:, :, None] * t[:, None]).reshape(parts.size, -1)
+        far = np.where(tracks.is_inside(points), moves(tracks, many, points, wish), np.inf).reshape(parts.shape)
+        i = np.argmin(far, axis=1)
+        low, high = parts[every, np.maximum(i - 1, 0)], parts[every, np.minimum(i + 1, LINE_CUTS)]
+        x = points.reshape(*parts.shape, -1)[every, i]
+    e, _ = errors(tracks.chain, tracks.T[k], x, tracks.size)
+    good = tracks.is_inside(x) & (np.max(np.abs(e), axis=1) <= REACHES)
+    return rows[good], x[good]
 
 
-def _itself(track: Track, curve: Curve, near: Array) -> Array | None:
-    """`near` (own,) itself, if it reaches the pose, is within the limits and on the curve."""
-    if track.own < track.chain.n:
+def _turned_near(tracks: Tracks, x: Array, wish: Array) -> Array:
+    """The arm's own joints (own,) [rad | m] of a point x (n,), angles turned near the wish (own,)."""
+    own = tracks.own
+    return np.asarray(nearest_turns(tracks, x[None], wish)[0, :own] * tracks.scale[:own])
+
+
+def _itself(tracks: Tracks, T: Array, curve: Curve, near: Array) -> Array | None:
+    """`near` (own,) itself, if it reaches the pose T (4, 4), is within the limits and on the curve."""
+    if tracks.own < tracks.chain.n:
         return None
-    x = near / track.scale
-    if np.any((x < track.low - track.tolerance) | (x > track.high + track.tolerance)):
+    x = near / tracks.scale
+    if np.any((x < tracks.low - tracks.tolerance) | (x > tracks.high + tracks.tolerance)):
         return None
-    e, _ = errors(track.chain, track.T[None], x[None], track.size)
+    e, _ = errors(tracks.chain, T[None], x[None], tracks.size)
     off = float(np.max(np.abs(e)))
-    if off > TYPED or not on_curve(curve, track.chain, track.T, near[None], track.size)[0]:
+    if off > TYPED or not on_curve(curve, tracks.chain, T, near[None], tracks.size)[0]:
         return None
     if off <= REACHES:
         return near
-    exact, _, _ = corrected(track.chain, track.T[None], x[None], track.size)
-    inside = np.all((exact[0] >= track.low - track.tolerance) & (exact[0] <= track.high + track.tolerance))
-    return np.asarray(exact[0] * track.scale) if inside else None
+    exact, _, _ = corrected(tracks.chain, T[None], x[None], tracks.size)
+    inside = np.all((exact[0] >= tracks.low - tracks.tolerance) & (exact[0] <= tracks.high + tracks.tolerance))
+    return np.asarray(exact[0] * tracks.scale) if inside else None
 
 
-def nearest_turns(track: Track, x: Array, wish: Array) -> Array:
+def nearest_turns(tracks: Tracks, x: Array, wish: Array) -> Array:
     """x (m, n) with each angle turned as near to the wish (own,) as its limits allow."""
-    wish = np.concatenate([wish, np.zeros(track.chain.n - len(wish))])
+    wish = np.concatenate([wish, np.zeros(tracks.chain.n - len(wish))])
     with np.errstate(invalid="ignore"):
-        least = np.ceil((track.low - track.tolerance - x) / TURN)
-        most = np.floor((track.high + track.tolerance - x) / TURN)
+        least = np.ceil((tracks.low - tracks.tolerance - x) / TURN)
+        most = np.floor((tracks.high + tracks.tolerance - x) / TURN)
         turns = np.clip(np.round((wish - x) / TURN), least, np.maximum(most, least))
-    return np.asarray(np.where(track.chain.revolute & np.isfinite(turns), x + TURN * turns, x))
+    return np.asarray(np.where(tracks.chain.revolute & np.isfinite(turns), x + TURN * turns, x))
 
 
-def moves(track: Track, x: Array, wish: Array) -> Array:
-    """(m,) the greatest joint move from the wish (own,) to x (m, n), angles turned as near as the limits allow.
+def moves(tracks: Tracks, k: Index, x: Array, wish: Array) -> Array:
+    """(m,) the greatest joint move from the wish (own,) to points x (m, n) of curves k (m,), turned near it.
 
     It is given less that of the joints that stand still: where that is the greatest the rest has all its digits. Of
     members with the same greatest move that one counts as nearer whose other joints move less.
     """
     own = len(wish)
-    gap = np.abs(nearest_turns(track, x, wish)[:, :own] - wish)
-    still = track.still[:own]
-    least = 0.0
-    if still.any():
-        least = float(np.max(np.abs(nearest_turns(track, track.points[:1], wish)[0, :own] - wish)[still]))
-    greatest = np.max(gap, axis=1) - least
+    gap = np.abs(nearest_turns(tracks, x, wish)[:, :own] - wish)
+    standing = np.abs(nearest_turns(tracks, tracks.points[tracks.first], wish)[:, :own] - wish)
+    least = np.max(np.where(tracks.still[:, :own], standing, 0.0), axis=1, initial=0.0)
+    greatest = np.max(gap, axis=1) - least[k]
     greatest[np.abs(greatest) < STILL] = 0.0
     return np.asarray(greatest + OTHERS * np.linalg.norm(gap, axis=1))
 
 
-def _nearest_of_pieces(track: Track, wish: Array) -> Array | None:
-    """The member (n,) of a curve within the limits that is nearest to the wish (own,)."""
-    found: list[Array] = []
-    for piece in pieces(track):
-        first, last = piece.first, piece.last
-        inner = np.arange(np.floor(first * PARTS) + 1.0, np.ceil(last * PARTS)) / PARTS
-        u = np.unique(np.concatenate([[first], inner, [last]]))
-        x, _ = track.cubic(u)
-        x[0], x[-1] = track.at(u[[0, -1]])
-        far = moves(track, x, wish)
-        lower = np.flatnonzero((far <= np.r_[np.inf, far[:-1]]) & (far <= np.r_[far[1:], np.inf]))
-        lower = lower[np.argsort(far[lower], kind="stable")][:CANDIDATES]
-        lower = lower[far[lower] <= far[lower[0]] + KINK]
-        sides = np.array([(i, j) for i in lower.tolist() for j in (i - 1, i + 1) if 0 <= j < len(u)]).reshape(-1, 2)
-        places = u[[0, -1]]
-        if len(sides):
-            a, b = np.sort(u[sides], axis=1).T
-            places = np.append(places, least(track, a, b, lambda y: moves(track, y, wish))[0])
-        found.extend(track.at(places))
+def _nearest_of_pieces(tracks: Tracks, wish: Array) -> tuple[Index, Array]:
+    """The members (k, n) within the limits nearest to the wish (own,), one of each curve that has any; which (k,)."""
+    found = pieces(tracks)
     if not found:
-        return None
-    rows = np.array(found)
-    return np.asarray(rows[np.argmin(moves(track, rows, wish))])
+        return np.empty(0, dtype=np.intp), np.empty((0, tracks.chain.n))
+    places = []
+    for piece in found:
+        inner = np.arange(np.floor(piece.first * PARTS) + 1.0, np.ceil(piece.last * PARTS)) / PARTS
+        places.append(np.unique(np.concatenate([[piece.first], inner, [piece.last]])))
+    counts = np.array([len(u) for u in places])
+    first = np.cumsum(counts) - counts
+    u, k = np.concatenate(places), np.repeat([piece.curve for piece in found], counts)
+    ends = np.unique(np.concatenate([first, first + counts - 1]))
+    x, _ = tracks.cubic(k, u)
+    x[ends] = tracks.at(k[ends], u[ends])
+    far = moves(tracks, k, x, wish)
+    sides = []
+    for start, count in zip(first.tolist(), counts.tolist(), strict=True):
+        mine = far[start : start + count]
+        lower = np.flatnonzero((mine <= np.r_[np.inf, mine[:-1]]) & (mine <= np.r_[mine[1:], np.inf]))
+        lower = lower[np.argsort(mine[lower], kind="stable")][:CANDIDATES]
+        lower = lower[mine[lower] <= mine[lower[0]] + KINK]
+        sides.append(start + np.concatenate([lower[lower > 0] - 1, lower[lower < count - 1]]))
+    low = np.concatenate(sides)
+    of, place = k[ends], u[ends]
+    if len(low):
+        more, _ = least(tracks, k[low], u[low], u[low + 1], lambda _, k, y: moves(tracks, k, y, wish))
+        of, place = np.append(of, k[low]), np.append(place, more)
+    rows = tracks.at(of, place)
+    order = np.lexsort((moves(tracks, of, rows, wish), of))
+    which, start = np.unique(of[order], return_index=True)
+    return which, rows[order[start]]
 
 
-def _nearest_on_surface(track: Track, curve: Curve, wish: Array) -> Array | None:
-    """The point of a surface that steps towards the wish, from its curves, end at, if it is within the limits."""
-    own, chain = track.own, track.chain
+def _nearest_on_surface(tracks: Tracks, T: Array, curve: Curve, wish: Array) -> Array:
+    """The point (1, n) of a surface at T (4, 4) that steps towards the wish, from its curves, end at; (0, n) for none
+    within the limits."""
+    own, chain = tracks.own, tracks.chain
     x = np.concatenate([sheet.x[:: max(len(sheet.x) // 4, 1)] for sheet in curve.sheets])
-    many = np.broadcast_to(track.T, (len(x), 4, 4))
-    kept = x[track.is_inside(x)]
+    many = np.broadcast_to(T, (len(x), 4, 4))
+    kept = x[tracks.is_inside(x)]
     for _ in range(WALK):
         gap = np.zeros_like(x)
         gap[:, :own] = turned_gap(chain, np.pad(wish - x[:, :own], ((0, 0), (0, chain.n - own))))[:, :own]
-        _, J = errors(chain, many, x, track.size)
+        _, J = errors(chain, many, x, tracks.size)
         values, Vt = np.linalg.svd(J)[1:]
         felt = Vt[:, : values.shape[1]] * (values > ZERO)[:, :, None]
         step = gap - ((felt @ gap[:, :, None]).transpose(0, 2, 1) @ felt)[:, 0]
         length = np.linalg.norm(step, axis=1, keepdims=True)
         step *= np.minimum(1.0, LONGEST / np.maximum(length, 1e-12))
-        x, off, _ = corrected(chain, many, x + step, track.size)
+        x, off, _ = corrected(chain, many, x + step, tracks.size)
         if float(np.max(length)) < 1e-6:
             break
-    ends = x[(off <= CLOSES) & track.is_inside(x)]
+    ends = x[(off <= CLOSES) & tracks.is_inside(x)]
     kept = np.concatenate([kept, ends])
-    return kept[np.argmin(moves(track, kept, wish))] if len(kept) else None
+    first = next(k for k, one in enumerate(tracks.curves) if one is curve.sheets[0])
+    far = moves(tracks, np.full(len(kept), first), kept, wish)
+    return kept[np.argmin(far)][None] if len(kept) else kept

@@ -4,8 +4,8 @@ Statement. For targets at which an arm is singular, or at which its solver may h
 of which targets all are found.
 Derivation. A trifle away, in any direction, the solver is regular; what it finds there is brought to the target by
 Newton's steps. If that makes as many distinct regular solutions as the arm has, complex ones counted too, there is no
-other (`elimination`), and nothing else need be tried. Otherwise other splits of the elimination and links that are
-wrong by a trifle are asked as well.
+other (`elimination`), and nothing else need be tried. Where nothing vouches for them other splits of the elimination
+and links that are wrong by a trifle are asked as well.
 Degenerate case. At a target at which solutions meet, or form a self-motion, fewer are regular: it stays open.
 """
 
@@ -72,13 +72,26 @@ def next_door(analysis: Analysis, T: Array) -> tuple[Index, Array, Flags]:
         if not six.virtual:
             whole, known = _counted(analysis, closing, real, imaginary)
             parts = [known, Candidates(*_of_targets(parts[0], ~whole))]
-        if not whole.all():
-            open_ = np.flatnonzero(~whole)
-            more = rescue_candidates(loop, solver.splits, closing[open_])
-            parts.append(Candidates(open_[more.index], more.values))
     else:
         found = solver.candidates(many)
         parts = [Candidates(found.index % len(T), found.values)]
+    return *_brought_home(analysis, closing, parts), whole
+
+
+def other_ways(analysis: Analysis, T: Array) -> tuple[Index, Array]:
+    """Configurations (s, window) near solutions of T (m, 4, 4) that other eliminations and wrong links lead to."""
+    if not isinstance(analysis.solver, General):
+        return np.empty(0, dtype=np.intp), np.empty((0, analysis.own.n))
+    assert analysis.loop is not None
+    closing = analysis.loop.closing(T)
+    return _brought_home(analysis, closing, [rescue_candidates(analysis.loop, analysis.solver.splits, closing)])
+
+
+def _brought_home(analysis: Analysis, closing: Array, parts: list[Candidates]) -> tuple[Index, Array]:
+    """Candidates for L6 (m, 4, 4) as configurations (s, window), after Newton's steps unless joints were added."""
+    six, loop = analysis.six, analysis.loop
+    assert six is not None
+    assert loop is not None
     index = np.concatenate([part.index for part in parts])
     values = np.concatenate([part.values for part in parts])
     scale = np.where(six.chain.revolute, 1.0, loop.size)
@@ -94,7 +107,7 @@ def next_door(analysis: Analysis, T: Array) -> tuple[Index, Array, Flags]:
         clear = np.flatnonzero((off < CLEAR) & (determinants(loop, values) > CLEARLY_REGULAR))
         near[clear] = each_once(loop, index[clear], values[clear], SAME)
         index, values = index[near], values[near]
-    return index, (values * scale - six.chain.offsets)[:, :own], whole
+    return index, (values * scale - six.chain.offsets)[:, :own]
 
 
 def _of_targets(candidates: Candidates, chosen: Flags) -> tuple[Index, Array]:

@@ -24,13 +24,14 @@ Here x are joint values [rad | size] and lengths are in the arm's size.
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse import few_rows
 from robokin.inverse.nearest import few_joints
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.kinematics.chain import Chain
 
 Array = NDArray[np.float64]
@@ -53,6 +54,9 @@ STEPS = 8
 SLOW_STEPS = 40
 """The same where the solutions count twice along a curve: each step halves the error, from 1e-3 to below 1e-10."""
 
+IDLE, IDLE_STEPS = 0.02, 4
+"""Newton steps end after so many in a row by which the error changed by less than this part of itself."""
+
 LONGEST = 0.3
 """The longest Newton step of a joint [rad | size]: farther off the tangent says nothing of the curve."""
 
@@ -69,6 +73,12 @@ that is off by 1e-7."""
 
 CONE = 0.05
 """P(v), as a part of its greatest value on the null space, below which a minimum of it is worth a trial."""
+
+COSINES, SINES = np.cos(np.arange(360) * (np.pi / 180)), np.sin(np.arange(360) * (np.pi / 180))
+"""Of twice the angles at which the forms are sampled, which are half a degree apart."""
+
+CIRCLE_STEPS = 60
+"""Newton's steps from there at most. Where a zero counts twice each takes away a third of the distance."""
 
 DRAWN = 48
 """Random null vectors from which zeros of P(v) are sought where the null space has three dimensions or more."""
@@ -92,7 +102,7 @@ def scale_of(chain: Chain, size: float) -> Array:
 
 def errors(chain: Chain, T: Array, x: Array, size: float) -> tuple[Array, Array]:
     """The error (s, 6) against poses T: (s, 4, 4) and the Jacobian (s, 6, n) at x (s, n) [rad | size]."""
-    return few_rows.errors(chain, T, x * scale_of(chain, size), size)
+    return error_and_jacobian(chain, T, x * scale_of(chain, size), size)
 
 
 def least_squares(A: Array, b: Array, zero: float = ZERO) -> Array:
@@ -147,29 +157,46 @@ def corrected(
     """
     e, J = errors(chain, T, x, size)
     off = np.max(np.abs(e), axis=1)
-    factor = np.ones(len(x))
+    rows = np.flatnonzero(off > settled)
+    if not len(rows) or not steps:
+        return x, off, J
+    x = np.array(x)
+    # What is still moved, by its rows: x, T, the equations and what the error was.
+    here, target, before = x[rows], T[rows], off[rows]
+    extra = 0 if normals is None else normals.shape[1]
+    A, b = np.zeros((len(rows), 6 + extra, x.shape[1])), np.zeros((len(rows), 6 + extra))
+    A[:, :6], b[:, :6] = J[rows], e[rows]
+    if normals is not None:
+        A[:, 6:] = normals[rows]
+    factor, idle = np.ones(len(rows)), np.zeros(len(rows), dtype=np.intp)
     for _ in range(steps):
-        rows = np.flatnonzero(off > settled)
-        if not len(rows):
-            break
-        A, b = J[rows], e[rows]
-        if normals is not None:
-            A = np.concatenate([A, normals[rows]], axis=1)
-            b = np.concatenate([b, np.zeros((len(rows), normals.shape[1]))], axis=1)
         dx = least_squares(A, b, zero)
         dx *= (LONGEST / np.maximum(np.max(np.abs(dx), axis=1), LONGEST))[:, None]
-        new = x[rows] + dx * factor[rows, None]
-        e_new, J_new = errors(chain, T[rows], new, size)
-        off_new = np.max(np.abs(e_new), axis=1)
-        # At a double root each step halves the distance and leaves a fourth of the error: twice the step goes there.
-        factor[rows] = np.where((off_new > 0.2 * off[rows]) & (off_new < 0.3 * off[rows]), 2.0, 1.0)
+        new = here + dx * factor[:, None]
+        e_new, J_new = errors(chain, target, new, size)
+        after = np.max(np.abs(e_new), axis=1)
         # Once close, a step that gains nothing is rounding; it would only wander.
-        better = (off_new < off[rows]) | (off[rows] > CLOSES)
-        rows, new = rows[better], new[better]
-        if not len(rows):
-            break
-        x = np.array(x)
-        x[rows], e[rows], J[rows], off[rows] = new, e_new[better], J_new[better], off_new[better]
+        better = (after < before) | (before > CLOSES)
+        whole = bool(better.all())
+        went = rows if whole else rows[better]
+        x[went], off[went], J[went] = (new, after, J_new) if whole else (new[better], after[better], J_new[better])
+        # At a double root each step halves the distance and leaves a fourth of the error: twice the step goes there.
+        double = (after > 0.2 * before) & (after < 0.3 * before)
+        # What is left of an error in directions that are left out stays as it is.
+        idle = np.where(np.abs(after - before) < IDLE * before, idle + 1, 0)
+        on = np.where(better, (after > settled) & (idle < IDLE_STEPS), factor > 1.0)
+        factor = np.where(double, 2.0, 1.0)
+        if whole:
+            here, before = new, after
+            A[:, :6], b[:, :6] = J_new, e_new
+        else:
+            here, before = np.where(better[:, None], new, here), np.where(better, after, before)
+            A[better, :6], b[better, :6] = J_new[better], e_new[better]
+        if not on.all():
+            if not on.any():
+                break
+            rows, here, target, before = rows[on], here[on], target[on], before[on]
+            A, b, factor, idle = A[on], b[on], factor[on], idle[on]
     return x, off, J
 
 
@@ -210,20 +237,36 @@ def null_spaces(J: Array) -> tuple[Array, Array]:
 
 def cone(J: Array) -> tuple[Array, bool]:
     """Directions (k, n) of length 1 that curves may have, to second order, and whether all of the null space does."""
-    null, left = null_spaces(J)
-    d = len(null)
-    if d <= 1:
-        return null, True
-    Q = second_order(J, null, left)
-    if not len(left) or float(np.max(np.abs(Q))) <= IDENTICAL:
-        ways = few_joints(null)
-        return ways / np.linalg.norm(ways, axis=1, keepdims=True), True
-    weights = _zeros_on_circle(Q) if d == 2 else _zeros_on_sphere(Q)
-    ways = weights @ null
-    # Two joints with one axis are known exactly, also where their direction counts twice.
-    exact = coaxial_pairs(J)
-    new = np.all(np.abs(ways @ exact.T) < 0.999, axis=1)
-    return np.concatenate([exact, ways[new]]), False
+    return cones(J[None])[0]
+
+
+def cones(J: Array) -> list[tuple[Array, bool]]:
+    """`cone` of each of some Jacobians (s, 6, n)."""
+    U, values, Vt = np.linalg.svd(J)
+    rank = np.sum(values > ZERO, axis=1).tolist()
+    null, left = [v[r:] for v, r in zip(Vt, rank, strict=True)], [u[:, r:].T for u, r in zip(U, rank, strict=True)]
+    Q = [second_order(*parts) if len(parts[1]) > 1 else None for parts in zip(J, null, left, strict=True)]
+    great = [i for i, forms in enumerate(Q) if forms is not None and forms.size and np.max(np.abs(forms)) > IDENTICAL]
+    weights: dict[int, Array] = {}
+    for shape in {Q[i].shape for i in great}:  # type: ignore[union-attr]
+        some = [i for i in great if Q[i].shape == shape]  # type: ignore[union-attr]
+        forms = np.array([Q[i] for i in some])
+        found = [_zeros_on_circle(one) for one in forms] if shape[1] == 2 else _zeros_on_spheres(forms)
+        weights |= dict(zip(some, found, strict=True))
+    out: list[tuple[Array, bool]] = []
+    for i, basis in enumerate(null):
+        if len(basis) <= 1:
+            out.append((basis, True))
+        elif i not in weights:
+            ways = few_joints(basis)
+            out.append((ways / np.linalg.norm(ways, axis=1, keepdims=True), True))
+        else:
+            ways = weights[i] @ basis
+            # Two joints with one axis are known exactly, also where their direction counts twice.
+            exact = coaxial_pairs(J[i])
+            new = np.all(np.abs(ways @ exact.T) < 0.999, axis=1)
+            out.append((np.concatenate([exact, ways[new]]), False))
+    return out
 
 
 def _norms(Q: Array, v: Array) -> Array:
@@ -232,39 +275,68 @@ def _norms(Q: Array, v: Array) -> Array:
 
 
 def _zeros_on_circle(Q: Array) -> Array:
-    """(k, 2) unit vectors at which the forms (m, 2, 2) are least and nearly zero, one of each pair ±v."""
-    angle = np.arange(360) * (np.pi / 360)
-    value = _norms(Q, np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    """(k, 2) unit vectors at which the forms (m, 2, 2) are least and nearly zero, one of each pair ±v.
+
+    At an angle θ a form is a + b cos 2θ + c sin 2θ. The sum of their squares is sampled, and Newton's steps lead to
+    where its slope vanishes.
+    """
+    a, b = 0.5 * (Q[:, 0, 0] + Q[:, 1, 1]), 0.5 * (Q[:, 0, 0] - Q[:, 1, 1])
+    c = 0.5 * (Q[:, 0, 1] + Q[:, 1, 0])
+    step = np.pi / 360
+    value = np.linalg.norm(a[:, None] + b[:, None] * COSINES + c[:, None] * SINES, axis=0)
     lower = (value <= np.roll(value, 1)) & (value < np.roll(value, -1))
     found = []
-    for i in np.flatnonzero(lower & (value <= CONE * np.max(value))):
-        centre, width = angle[i], np.pi / 360
-        while width > 1e-12:
-            fine = centre + np.linspace(-width, width, 11)
-            centre = fine[np.argmin(_norms(Q, np.stack([np.cos(fine), np.sin(fine)], axis=1)))]
-            width /= 4.0
-        found.append([np.cos(centre), np.sin(centre)])
+    forms = np.stack([a, b, c], axis=1).tolist()
+    for i in np.flatnonzero(lower & (value <= CONE * np.max(value))).tolist():
+        low, high = 2.0 * step * (i - 1), 2.0 * step * (i + 1)
+        double = 2.0 * step * i
+        for _ in range(CIRCLE_STEPS):
+            cosine, sine = math.cos(double), math.sin(double)
+            slope = bend = 0.0
+            for x, y, z in forms:
+                f, rate = x + y * cosine + z * sine, z * cosine - y * sine
+                slope += f * rate
+                bend += rate * rate + f * (x - f)
+            low, high = (low, double) if slope > 0.0 else (double, high)
+            ahead = double - slope / bend if bend > 0.0 else low
+            ahead = ahead if low < ahead < high else 0.5 * (low + high)
+            if abs(ahead - double) < 1e-14:
+                break
+            double = ahead
+        found.append([math.cos(0.5 * double), math.sin(0.5 * double)])
     return np.array(found).reshape(-1, 2)
 
 
-def _zeros_on_sphere(Q: Array) -> Array:
-    """(k, d) unit vectors at which the forms (m, d, d) are zero: some of infinitely many, for d of three or more."""
-    d = Q.shape[1]
-    v = np.concatenate([np.eye(d), np.random.default_rng(7).normal(size=(DRAWN, d))])
-    v /= np.linalg.norm(v, axis=1, keepdims=True)
+def _zeros_on_spheres(Q: Array) -> list[Array]:
+    """Of each of c sets of forms (c, m, d, d) unit vectors (k, d) at which they are zero, for d of three or more.
+
+    There are infinitely many: some are found.
+    """
+    c, d = len(Q), Q.shape[2]
+    drawn = np.concatenate([np.eye(d), np.random.default_rng(7).normal(size=(DRAWN, d))])
+    drawn /= np.linalg.norm(drawn, axis=1, keepdims=True)
+    v, of = np.tile(drawn, (c, 1)), np.repeat(np.arange(c), len(drawn))
+    rows = np.arange(len(v))
     for _ in range(30):
-        slope = np.einsum("mab,kb->kma", Q, v)
-        value = np.einsum("kma,ka->km", slope, v)
+        x = v[rows]
+        slope = np.einsum("kmab,kb->kma", Q[of[rows]], x)
+        value = np.einsum("kma,ka->km", slope, x)
         # At right angles to v: along it the forms only shrink.
-        A = np.concatenate([2.0 * slope, v[:, None]], axis=1)
-        v = v - least_squares(A, np.concatenate([value, np.zeros((len(v), 1))], axis=1))
-        v /= np.linalg.norm(v, axis=1, keepdims=True)
-    v = v[_norms(Q, v) <= IDENTICAL + 1e-3 * float(np.max(np.abs(Q)))]
-    kept: list[Array] = []
-    for row in v:
-        if all(abs(float(row @ other)) < 0.999 for other in kept):
-            kept.append(row)
-    return np.array(kept).reshape(-1, d)
+        A = np.concatenate([2.0 * slope, x[:, None]], axis=1)
+        dx = least_squares(A, np.concatenate([value, np.zeros((len(x), 1))], axis=1))
+        x = x - dx
+        v[rows] = x / np.linalg.norm(x, axis=1, keepdims=True)
+        rows = rows[np.max(np.abs(dx), axis=1) > 1e-15]
+        if not len(rows):
+            break
+    found = []
+    for forms, some in zip(Q, v.reshape(c, -1, d), strict=True):
+        kept: list[Array] = []
+        for row in some[_norms(forms, some) <= IDENTICAL + 1e-3 * float(np.max(np.abs(forms)))]:
+            if all(abs(float(row @ other)) < 0.999 for other in kept):
+                kept.append(row)
+        found.append(np.array(kept).reshape(-1, d))
+    return found
 
 
 def follows(chain: Chain, T: Array, x: Array, ways: Array, size: float) -> Flags:
@@ -286,14 +358,13 @@ def follows(chain: Chain, T: Array, x: Array, ways: Array, size: float) -> Flags
 def coaxial_pairs(J: Array) -> Array:
     """(k, n) the directions of length 1 in which two joints with one axis trade their motion, for J (6, n)."""
     n = J.shape[1]
-    pairs = []
-    for i in range(n):
-        for j in range(i + 1, n):
-            way = np.zeros(n)
-            way[[i, j]] = 1.0, -1.0 if float(J[:, i] @ J[:, j]) > 0.0 else 1.0
-            if float(np.max(np.abs(J @ way))) <= COAXIAL:
-                pairs.append(way / np.sqrt(2.0))
-    return np.array(pairs).reshape(-1, n)
+    sign = np.where(J.T @ J > 0.0, -1.0, 1.0)
+    off = np.max(np.abs(J[:, :, None] + sign * J[:, None]), axis=0)
+    i, j = np.nonzero(np.triu(off <= COAXIAL, 1))
+    pairs = np.zeros((len(i), n))
+    rows = np.arange(len(i))
+    pairs[rows, i], pairs[rows, j] = 1.0, sign[i, j]
+    return np.asarray(pairs / np.sqrt(2.0))
 
 
 def coaxial_line(J: Array, way: Array) -> Array | None:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.newton import LONG, singular_step
-from robokin.inverse.padding import joint_frames_of
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.kinematics.chain import Chain
 
 Array = NDArray[np.float64]
@@ -32,31 +32,6 @@ ARRIVED = 1e-26
 FLOOR = 1e-13
 """Least λ of a joint as a part of its |column of J|², so that the matrix has an inverse at a singular configuration;
 the column is great where the axis is far from the tool, as a long slide puts it."""
-
-
-def pose_error(T: Array, found: Array, size: float) -> Array:
-    """(s, 6): origin's distance [size] and rotation vector [rad] from found to T, (s, 4, 4), in the base's axes."""
-    D = T[:, :3, :3] @ np.swapaxes(found[:, :3, :3], 1, 2)
-    w = 0.5 * np.stack([D[:, 2, 1] - D[:, 1, 2], D[:, 0, 2] - D[:, 2, 0], D[:, 1, 0] - D[:, 0, 1]], axis=1)
-    sine = np.linalg.norm(w, axis=1)
-    cosine = 0.5 * (np.trace(D, axis1=1, axis2=2) - 1.0)
-    angle = np.arctan2(sine, cosine)
-    # Near a half turn the skew part vanishes; any axis is as good as another to leave it by.
-    stuck = (sine < 1e-9) & (cosine < 0.0)
-    scale = np.where(sine > 1e-12, angle / np.where(sine > 1e-12, sine, 1.0), 1.0)
-    w = np.where(stuck[:, None], [np.pi, 0.0, 0.0], w * scale[:, None])
-    return np.concatenate([(T[:, :3, 3] - found[:, :3, 3]) / size, w], axis=1)
-
-
-def error_and_jacobian(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
-    """The error (s, 6) and the Jacobian (s, 6, n) with lengths, also those of prismatic joints, in sizes."""
-    F = joint_frames_of(chain, q)
-    z, o, p = F[:, :-1, :3, 2], F[:, :-1, :3, 3], F[:, -1, None, :3, 3]
-    turns = chain.revolute[:, None]
-    linear = np.where(turns, np.cross(z, p - o) / size, z)
-    angular = np.where(turns, z, 0.0)
-    J = np.swapaxes(np.concatenate([linear, angular], axis=2), 1, 2)
-    return pose_error(T, F[:, -1], size), J
 
 
 def descend(

@@ -16,7 +16,7 @@ from robokin.inverse.analysis import Analysis
 from robokin.inverse.closing import DONE, EXACT_STEPS, newton_within
 from robokin.inverse.members import NEIGHBOURS, UNRESOLVED
 from robokin.inverse.null_motion import corrected
-from robokin.inverse.numeric import error_and_jacobian
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.inverse.verify import Found, wrapped
 from robokin.inverse.window import least_singular_values
 

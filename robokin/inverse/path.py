@@ -14,18 +14,20 @@ Redundant arms, and arms that lack directions that the task leaves open, are fol
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robokin.brief import Answer
 from robokin.errors import InputError
+from robokin.expected import expect_choice, expect_finite, expect_flag, expect_whole
 from robokin.inverse.follow import MOST, Follower
 from robokin.inverse.solve import target_poses
-from robokin.kinematics.forward import forward_kinematics, joint_values
+from robokin.kinematics.forward import forward_kinematics
 from robokin.kinematics.velocity import SINGULAR, TaskName, differential_kinematics, lost_directions, motion_task
-from robokin.model import Robot
+from robokin.model import Robot, expect_robot
 from robokin.model.robot import LIMIT_TOLERANCE
 from robokin.spatial import axis_angle_from_rotation, rotation_from_axis_angle, transform
 
@@ -51,13 +53,14 @@ class Event:
     value: float | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Path:
+@dataclass(frozen=True, eq=False, repr=False)
+class Path(Answer):
     """A path, as far as it can be followed.
 
     t: (m,) time from 0 to 1; s: (m,) fraction of the path; q: (m, n) [rad | m]; T: (m, 4, 4) [m]; fraction: of the path
     that can be followed, 1 if all; events: in the order in which they come; manipulability: (m,) [SI]; steps: how many
-    were asked for, so that m is steps + 1 if all can be followed.
+    were asked for, so that m is steps + 1 if all can be followed; kind: whether the joints move together or the tool
+    in a line.
     """
 
     t: Array
@@ -68,6 +71,8 @@ class Path:
     events: tuple[Event, ...]
     manipulability: Array
     steps: int
+    robot: Robot
+    kind: Literal["joint", "line"] = "joint"
 
     @property
     def complete(self) -> bool:
@@ -78,6 +83,16 @@ class Path:
     def length(self) -> float:
         """How far the tool's origin travels [m], by straight pieces from row to row."""
         return float(np.sum(np.linalg.norm(np.diff(self.T[:, :3, 3], axis=0), axis=1)))
+
+    def __len__(self) -> int:
+        """The number of rows."""
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        """A line: what moves, how far, and how much of it can be followed."""
+        what = "line" if self.kind == "line" else "joints"
+        how = "" if self.complete else f", followed up to {self.fraction:.4g}"
+        return f"<path of {self.robot.id or self.robot.name} ({what}): {len(self)} rows, {self.length:.6g} m{how}>"
 
 
 def time_law(t: ArrayLike) -> Array:
@@ -96,7 +111,7 @@ def interpolate_joints(robot: Robot, start: ArrayLike, end: ArrayLike, steps: in
     s = time_law(t)
     q = first + s[:, None] * (last - first)
     fraction, event = 1.0, None
-    if limits:
+    if expect_flag(limits, "limits"):
         fraction, event = _leaves(robot, first, last)
     kept = s <= fraction
     return _path(robot, t[kept], s[kept], q[kept], fraction, event, steps, None)
@@ -116,13 +131,11 @@ def follow_line(
     taken for arms of up to three joints that place a point. The path ends where a joint leaves its limits (with
     `limits`), where there is no solution, or where a joint would jump. Raises InputError.
     """
-    first = _configuration(robot, start, "start")
+    first, limits = _configuration(robot, start, "start"), expect_flag(limits, "limits")
     target = target_poses(T)
     if target.ndim != 2:
         raise InputError(f"found targets of shape {target.shape}, expected one, (4, 4)")
-    chosen = line_task(robot) if task is None else task
-    if chosen not in ("pose", "position"):
-        raise InputError(f"found task '{chosen}', expected pose or position")
+    chosen = line_task(robot) if task is None else cast(PathTask, expect_choice(task, ("pose", "position"), "task"))
     t = _times(steps)
     s = time_law(t)
     line = Line(forward_kinematics(robot, first), target)
@@ -146,9 +159,8 @@ def follow_line(
         else:
             rows.append(q)
     m = len(rows)
-    return _path(
-        robot, t[:m], s[:m], np.array(rows), fraction, event, steps, "position" if chosen == "position" else None
-    )
+    counted: TaskName | None = "position" if chosen == "position" else None
+    return replace(_path(robot, t[:m], s[:m], np.array(rows), fraction, event, steps, counted), kind="line")
 
 
 def no_path(robot: Robot, start: ArrayLike, reason: str, steps: int = 100) -> Path:
@@ -178,15 +190,13 @@ class Line:
 
 
 def _times(steps: int) -> Array:
-    if steps < 1 or steps > MOST:
-        raise InputError(f"found {steps} steps, expected 1 to {MOST}")
+    steps = expect_whole(steps, "steps", 1, MOST)
     return np.arange(steps + 1) / steps
 
 
 def _configuration(robot: Robot, q: ArrayLike, name: str) -> Array:
-    values = joint_values(robot, q)
-    if values.ndim != 1 or not np.all(np.isfinite(values)):
-        raise InputError(f"found {name} of shape {values.shape}, expected {robot.n} finite joint values")
+    robot = expect_robot(robot)
+    values = expect_finite(q, name, f"{robot.n} finite joint values", (robot.n,))
     if not robot.n:
         raise InputError(f"{robot.name} has no joints, expected a robot that can move")
     return values
@@ -248,7 +258,7 @@ def _path(
     events = _singular(robot, s, q, found.singular_values, task)
     if event is not None:
         events.append(event)
-    return Path(t, s, q, T, fraction, tuple(events), found.manipulability, steps)
+    return Path(t, s, q, T, fraction, tuple(events), found.manipulability, steps, robot)
 
 
 def _singular(robot: Robot, s: Array, q: Array, values: Array, task: TaskName | None) -> list[Event]:

@@ -6,7 +6,9 @@ r = u r0 + (1 - u) r1, p = u p0 + (1 - u) p1 for u from 1 to 0 leads through rig
 is complex. On it X = J1 L1 … J6 L6 stays I where S q' = -b, b being the twist of L6's motion in its own frame,
 ω = 2 (r* r') / r·r and Rᵀp'. From a start in general position the line misses, with probability one, the complex
 targets at which solutions meet: only at its end two paths can. Each step predicts by the cubic through the last two
-points and their tangents and corrects by two Newton steps.
+points and their tangents and corrects by two Newton steps. From a start that is not complex, or near the target, the
+way is bent: with w = γ u / (1 - u + γ u) in place of u, |γ| = 1, it is an arc from 1 to 0 in the plane of complex w, on
+which, for all but some γ, there is none of the finitely many places of the line at which solutions meet.
 Degenerate case. Where a path ends in a singular solution q goes like a root of u, mostly the second, and where it leads
 to infinity an angle goes like i k log u. Steps are steps in s, u = s²: in s a double solution's path is smooth, and
 steps in proportion to s follow all others. u times the speed in u tells them apart, as it vanishes at a solution and
@@ -69,6 +71,9 @@ END_S = END ** (1.0 / ROOTS)
 NEAR = 1e-6
 """Value of u below which a path on which no further step succeeds counts as having come to its end."""
 
+NEAR_S = NEAR ** (1.0 / ROOTS)
+"""The same of s."""
+
 SHORTEST = 5e-8
 """Length of a step, as a part of s, below which a path is given up."""
 
@@ -81,6 +86,10 @@ AGAIN = 0.5
 
 MOST = 400
 """Steps after which a path is given up; the longest of those that end take some hundred."""
+
+LATE_MOST = 120
+"""Steps below `NEAR` after which a path is left: ends take some fifteen from there, and up to a hundred where two
+solutions are 1e-6 apart. Where several nearly meet rounding makes for any number."""
 
 FAR = 16.0
 """|Im q| [rad], or the logarithm of a slide's length [size], beyond which a path is left: the entries of X are as large
@@ -141,9 +150,13 @@ def points_of(closing: NDArray[np.complex128] | Array) -> Points:
     return Points(r, np.ascontiguousarray(closing[:, :3, 3].T.astype(np.complex128)))
 
 
-def track(loop: Loop, start: Points, target: Points, values: Complex) -> Ends:
-    """Follow solutions values (6, s) [rad | size] at start, (s,) points, to target, (s,) points."""
+def track(loop: Loop, start: Points, target: Points, values: Complex, bend: Complex | None = None) -> Ends:
+    """Follow solutions values (6, s) [rad | size] at start, (s,) points, to target, (s,) points.
+
+    bend: (s,) numbers γ of length 1 by which ways leave the straight lines, 1 where they do not.
+    """
     count = values.shape[1]
+    bend = np.ones(count, dtype=np.complex128) if bend is None else bend
     ends = Ends(values.astype(np.complex128), np.ones(count), np.zeros(count), np.zeros(count, dtype=bool))
     # Of the two quaternions of the target's rotation the one nearer to the start's makes the shorter way.
     sign = np.where((start.r.conj() * target.r).sum(axis=0).real < 0.0, -1.0, 1.0)
@@ -152,19 +165,20 @@ def track(loop: Loop, start: Points, target: Points, values: Complex) -> Ends:
         part = np.arange(first, min(first + BLOCK, count))
         # A step that leads astray may overflow: it is not accepted.
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            _track(loop, start.pick(part), target.pick(part), part, ends)
+            _track(loop, start.pick(part), target.pick(part), bend[part], part, ends)
     return ends
 
 
-def _track(loop: Loop, start: Points, target: Points, part: Index, ends: Ends) -> None:
+def _track(loop: Loop, start: Points, target: Points, bend: Complex, part: Index, ends: Ends) -> None:
     """`track` for a block of paths, whose ends are written to the places `part`."""
     q = np.ascontiguousarray(ends.values[:, part])
     s = np.ones(len(part))
-    last, twist = _on_line(start, target, s)
+    last, twist = _on_line(start, target, s, bend)
     axes, _, _ = follow(loop, last, q)
     v = ROOTS * solved(twists(loop, axes), twist)
     before, tangent = q, v  # the point before and its tangent; with the infinite step between they say nothing
     h, gone, tried = np.full(len(part), FIRST), np.full(len(part), np.inf), np.full(len(part), np.inf)
+    late = np.zeros(len(part))
     for _ in range(MOST):
         # To the end at once, unless that failed not long ago; then not beyond where the path is left.
         ended = s <= END_S
@@ -175,7 +189,7 @@ def _track(loop: Loop, start: Points, target: Points, part: Index, ends: Ends) -
         guess = q + h * v + (h * h / gone) * (v - D + (1.0 + h / gone) * (v + tangent - 2.0 * D))
         weight = _weights(loop, q)
         stride = (np.abs(guess - q) * weight).max(axis=0)
-        last, twist = _on_line(start, target, to**ROOTS)
+        last, twist = _on_line(start, target, to**ROOTS, bend)
         axes, error, _ = follow(loop, last, guess)
         first = solved(twists(loop, axes), error)
         guess -= first
@@ -196,12 +210,14 @@ def _track(loop: Loop, start: Points, target: Points, part: Index, ends: Ends) -
         gone = np.where(fine, h, gone)
         h = h * factor
         stuck = ~fine & (h < SHORTEST * s)
-        over = (s <= END_S) | stuck | (distance(loop, q) > FAR)
+        late += s < NEAR_S
+        over = (s <= END_S) | stuck | (late > LATE_MOST) | (distance(loop, q) > FAR)
         if np.count_nonzero(over) > 0.2 * len(s) or over.all():
             _leave(loop, ends, part, over, q, v, s, stuck)
             on = ~over
-            part, q, v, s = part[on], q[:, on], v[:, on], s[on]
+            part, bend, q, v, s = part[on], bend[on], q[:, on], v[:, on], s[on]
             before, tangent, h, gone, tried = before[:, on], tangent[:, on], h[on], gone[on], tried[on]
+            late = late[on]
             start, target = Points(start.r[:, on], start.p[:, on]), Points(target.r[:, on], target.p[:, on])
             if not len(part):
                 return
@@ -226,10 +242,15 @@ def distance(loop: Loop, q: Complex) -> Array:
     return np.asarray(np.where(loop.revolute[:, None], np.abs(q.imag), np.log1p(np.abs(q))).max(axis=0))
 
 
-def _on_line(start: Points, target: Points, u: Array) -> tuple[Complex, Complex]:
-    """L6's columns (4, 3, s) at u (s,), and the twist (6, s) -b by which joints must move as u falls."""
+def _on_line(start: Points, target: Points, u: Array, bend: Complex) -> tuple[Complex, Complex]:
+    """L6's columns (4, 3, s) at u (s,), and the twist (6, s) -b by which joints must move as u falls.
+
+    The place on the line is w = γ u / (1 - u + γ u), γ being the bend (s,).
+    """
     rate = target.r - start.r
-    r = target.r - u * rate
+    below = 1.0 / (1.0 + (bend - 1.0) * u)
+    w = bend * u * below
+    r = target.r - w * rate
     _, x, y, z = r
     n = 1.0 / (r * r).sum(axis=0)
     rw, rx, ry, rz = 2.0 * n * r
@@ -239,14 +260,15 @@ def _on_line(start: Points, target: Points, u: Array) -> tuple[Complex, Complex]
     L[0, 2], L[2, 0] = rx * z - rw * y, rx * z + rw * y
     L[1, 2], L[2, 1] = ry * z + rw * x, ry * z - rw * x
     slide = target.p - start.p
-    L[3] = target.p - u * slide
+    L[3] = target.p - w * slide
     b = np.empty((6, len(u)), dtype=np.complex128)
     np.einsum("ics,cs->is", L[:3], slide, out=b[:3])
     a, d, e, f = rate
     b[3] = rw * d - rx * a - ry * f + rz * e
     b[4] = rw * e - ry * a - rz * d + rx * f
     b[5] = rw * f - rz * a - rx * e + ry * d
-    return L, -b
+    b *= -bend * below * below
+    return L, b
 
 
 def points_at(loop: Loop, values: Complex) -> Points:

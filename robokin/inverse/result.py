@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import SupportsIndex, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Answer, Brief
+from robokin.errors import InputTypeError
+from robokin.expected import described
+from robokin.model import Robot
+
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class Solution:
+@dataclass(frozen=True, eq=False, repr=False)
+class Solution(Brief):
     """One joint configuration.
 
     q: (n,) [rad | m]; `branch` names it (shoulder, elbow, wrist) or is empty; the errors are those of its
     pose against the target, measured by forward kinematics [m, rad]. `free` names the joints that may
-    trade motion with each other at this configuration without moving the hand (a self-motion), in
+    trade motion with each other at this configuration while the pose stays (a self-motion), in
     numbers from 1; it is empty where the solution stands alone.
     """
 
@@ -29,8 +35,8 @@ class Solution:
     free: tuple[int, ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
-class Arc:
+@dataclass(frozen=True, eq=False, repr=False)
+class Arc(Brief):
     """A piece of a self-motion that lies within the joint limits.
 
     q: (k, n) [rad | m] configurations along it, each reaching the pose; the first and the last are its ends,
@@ -42,8 +48,8 @@ class Arc:
     whole: bool = False
 
 
-@dataclass(frozen=True, eq=False)
-class Family:
+@dataclass(frozen=True, eq=False, repr=False)
+class Family(Brief):
     """A self-motion: a connected set of configurations that all reach the pose.
 
     joints: those that move, in numbers from 1; dimension: 1 for a curve, more for a surface; closed: whether the
@@ -59,9 +65,24 @@ class Family:
     solution: int
 
 
-@dataclass(frozen=True, eq=False)
-class Result:
-    """The answer for one target.
+@dataclass(frozen=True, eq=False, repr=False)
+class Question(Brief):
+    """What was asked: for the pose T (4, 4) or (m, 4, 4) [m] of a robot's tool.
+
+    `task` is what of the pose counts, `limits` whether the joint limits do, `hold` the joints (from 0) that are held
+    at values [rad | m].
+    """
+
+    robot: Robot
+    T: Array
+    task: str = "pose"
+    limits: bool = True
+    hold: Mapping[int, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result(Answer):
+    """The answer for one target: a sequence of its solutions.
 
     `complete` is true only where every solution is listed, or stands on one of the `families`; `basis` is what
     that rests on: "counted" (as many complex solutions found as the arm has at any pose), "accounted" (the paths
@@ -85,15 +106,39 @@ class Result:
     certificate: str = ""
     all_known: bool = False
     families: tuple[Family, ...] = ()
+    question: Question | None = None
 
     @property
     def reachable(self) -> bool:
         """Whether there is a solution."""
         return bool(self.solutions)
 
+    def __len__(self) -> int:
+        """The number of solutions."""
+        return len(self.solutions)
 
-@dataclass(frozen=True, eq=False)
-class BatchResult:
+    @overload
+    def __getitem__(self, i: SupportsIndex) -> Solution: ...
+    @overload
+    def __getitem__(self, i: slice) -> tuple[Solution, ...]: ...
+    def __getitem__(self, i: SupportsIndex | slice) -> Solution | tuple[Solution, ...]:
+        """Solution i, or a tuple of some."""
+        return self.solutions[i]
+
+    def __iter__(self) -> Iterator[Solution]:
+        """The solutions in their order."""
+        return iter(self.solutions)
+
+    def __repr__(self) -> str:
+        """A line: how many solutions, whether they are all, or why there is none."""
+        if not self.solutions:
+            return f"<no solution: {self.reason}>"
+        count = "1 solution" if len(self) == 1 else f"{len(self)} solutions"
+        return f"<{count}, {'these are all' if self.complete else 'perhaps not all'}: {self.method}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BatchResult(Answer):
     """The answers for m targets as arrays, padded with NaN; `result[i]` is the answer for target i.
 
     q: (m, k, n) [rad | m]; count: (m,); position_error, angle_error: (m, k) [m, rad];
@@ -113,17 +158,29 @@ class BatchResult:
     """Names all solutions, target after target: as many as `count` has in all."""
     reason: Callable[[int], str | None]
     """Says why a target has no solution."""
+    question: Question | None = None
 
     def __len__(self) -> int:
         """The number of targets."""
         return len(self.count)
 
-    def __getitem__(self, i: int) -> Result:
-        """The answer for target i."""
-        if not -len(self) <= i < len(self):
-            raise IndexError(f"target {i} of {len(self)}")
-        return self.single(i % len(self))
+    def __getitem__(self, i: SupportsIndex) -> Result:
+        """The answer for target i, negative ones from the end. Raises IndexError."""
+        if not hasattr(i, "__index__"):
+            raise InputTypeError(f"index: found {described(i)}, expected the number of a target, from 0")
+        number = i.__index__()
+        if not -len(self) <= number < len(self):
+            raise IndexError(f"target {number} of {len(self)}")
+        number %= len(self)
+        result = self.single(number)
+        if self.question is None:
+            return result
+        return replace(result, question=replace(self.question, T=self.question.T[number]))
 
     def __iter__(self) -> Iterator[Result]:
         """The answers in the order of the targets."""
         return (self[i] for i in range(len(self)))
+
+    def __repr__(self) -> str:
+        """A line: how many targets, and how many of them are reached."""
+        return f"<{len(self)} targets, {int((self.count > 0).sum())} reached: {self.method}>"

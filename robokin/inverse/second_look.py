@@ -4,10 +4,10 @@ Statement. For targets at which an arm is singular, or at which its solver may h
 Ways, each from the solver's own algebra or none of it:
 - Next door. The solver is asked for poses a trifle away in several directions, where it is regular, and what it finds
   is brought to the target by Newton's steps.
-- Other splits of the elimination and links that are wrong by a trifle (`elimination`).
 - For an arm of fewer than six joints other added joints: turns about skew axes, with which the loop is that of a
   general arm (`skew`).
-- A homotopy from complex targets, which accounts for all N solutions of the loop (`homotopy`).
+- A homotopy from targets close by or complex ones, which accounts for all N solutions of the loop (`homotopy`).
+- Where it does not, other splits of the elimination and links that are wrong by a trifle (`elimination`).
 What is said. If N distinct regular complex solutions are shown there is no other: counted. If all paths of the homotopy
 ended, from two independent starts alike, they are accounted for. Else there may be more.
 """
@@ -29,10 +29,12 @@ from robokin.inverse.homotopy import Homotopy
 from robokin.inverse.loop import Candidates, ComplexCandidates, Loop
 from robokin.inverse.monodromy import Known
 from robokin.inverse.more_motions import listed_with_more
-from robokin.inverse.neighbours import NEARLY, STEPS, half_turns, next_door
+from robokin.inverse.neighbours import NEARLY, STEPS, half_turns, next_door, other_ways
 from robokin.inverse.newton import closing_at, refine
-from robokin.inverse.numeric import descend, error_and_jacobian
+from robokin.inverse.numeric import descend
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.inverse.skew import Skew
+from robokin.inverse.starts_close_by import CloseBy
 from robokin.inverse.verify import CLOSES, Found, distinct, merged
 from robokin.kinematics.chain import Chain
 
@@ -94,6 +96,10 @@ def look_again(
         parts.append((open_[ends[0][still]], ends[1][still, : analysis.own.n]))
         basis[open_[closed]] = ACCOUNTED
         words = {int(open_[i]): text for i, text in words.items()}
+        open_ = open_[~closed]
+        if len(open_):
+            index, q = other_ways(analysis, T[open_])
+            parts.append((open_[index], q))
     index = np.concatenate([part[0] for part in parts])
     q = np.concatenate([part[1] for part in parts])
     found = merged(found, closing_at_last(analysis.own, T, index, q, analysis.size))
@@ -149,13 +155,15 @@ def _others_of(analysis: Analysis) -> _Others:
         if analysis.six.virtual:
             skews = tuple(Skew(analysis.own, seed) for seed in (40, 41))
             first = skews[0]
-            homotopy = Homotopy(first.loop, partial(known_of_skew, first))
+            beside = CloseBy(first.loop, first.solver, first.number)
+            homotopy = Homotopy(first.loop, partial(known_of_skew, first), beside)
             _kept[analysis] = _Others(skews, homotopy, first.loop, first.six.chain)
         else:
             # Nothing kept here may hold on to the analysis, which it is kept for.
-            homotopy = Homotopy(
-                analysis.loop, partial(known_solutions, analysis.loop, analysis.solver, analysis.number)
-            )
+            solver = analysis.solver
+            known = partial(known_solutions, analysis.loop, solver, analysis.number)
+            beside = CloseBy(analysis.loop, solver.first if isinstance(solver, General) else solver, analysis.number)
+            homotopy = Homotopy(analysis.loop, known, beside)
             _kept[analysis] = _Others((), homotopy, analysis.loop, analysis.six.chain)
     return _kept[analysis]
 

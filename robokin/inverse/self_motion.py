@@ -27,8 +27,8 @@ from robokin.inverse.null_motion import (
     ZERO,
     coaxial_line,
     cone,
+    cones,
     corrected,
-    errors,
     follows,
     null_spaces,
     scale_of,
@@ -43,24 +43,42 @@ Index = NDArray[np.intp]
 class Local(NamedTuple):
     """What configurations near solutions are.
 
-    q: (s, n) [rad | m] brought to the pose; null: (s,) dimension of the null space; dimension: (s,) that of the set
-    of solutions there: 0 where the solution stands alone; double: (s,) whether it is a root of two or more solutions
-    that merge, and known to full digits; ways: for each the directions (k, n) in which curves leave it (in x, of
-    length 1). What stands alone with null > 0 and is not double is near a fold that the target is not at, or a root
-    of an order that is not known.
+    q: (s, n) [rad | m] brought to the pose, x: (s, n) the same as far as Newton's steps go; null: (s,) dimension of the
+    null space; dimension: (s,) that of the set of solutions there: 0 where the solution stands alone; double: (s,)
+    whether it is a root of two or more solutions that merge, and known to full digits; ways: for each the directions
+    (k, n) in which curves leave it (in x, of length 1). What stands alone with null > 0 and is not double is near a
+    fold that the target is not at, or a root of an order that is not known. trial: (s,) whether it is still to be shown
+    that a curve leads away.
     """
 
     q: Array
+    x: Array
     null: NDArray[np.intp]
     dimension: NDArray[np.intp]
     double: Flags
-    ways: tuple[Array, ...]
+    ways: list[Array]
+    trial: Flags
 
 
 def classify(chain: Chain, T: Array, q: Array, size: float) -> Local:
     """What q (s, n) [rad | m], which nearly reach T (s, 4, 4) or (4, 4), are: alone, double, or on a set."""
-    scale = scale_of(chain, size)
     T = np.broadcast_to(T, (len(q), 4, 4))
+    local = suspected(chain, T, q, size)
+    rows = np.flatnonzero(local.trial)
+    if len(rows):
+        ways = np.array([local.ways[i][0] for i in rows])
+        on = leads_away(chain, T[rows], local.x[rows], ways, size)
+        local.trial[rows] = False
+        stand_alone(chain, T, local, rows[~on], size)
+    return local
+
+
+def suspected(chain: Chain, T: Array, q: Array, size: float, alone: bool = True) -> Local:
+    """`classify` for T (s, 4, 4), but for `trial`: what has one null vector may turn out to stand alone.
+
+    Following a curve shows that as well. Unless `alone` nothing is made of solutions that are on no curve.
+    """
+    scale = scale_of(chain, size)
     x, off, J = corrected(chain, T, q / scale, size)
     null = chain.n - np.sum(np.linalg.svd(J, compute_uv=False) > ZERO, axis=1)
     exact = np.where(off[:, None] <= CLOSES, x * scale, q)
@@ -77,48 +95,62 @@ def classify(chain: Chain, T: Array, q: Array, size: float) -> Local:
     dimension = np.where(manifold, null, 0)
     for i in np.flatnonzero(manifold):
         ways[i] = cone(J[i])[0]
-    _follow(chain, T, x, J, np.flatnonzero(trying), size, ways, dimension)
-    _sharpen(chain, T, np.where(dimension == 0, null, 0), size, exact, double)
+    trial = _follow(chain, T, x, J, np.flatnonzero(trying), size, ways, dimension)
+    if alone:
+        _sharpen(chain, T, np.where(dimension == 0, null, 0), size, exact, double)
     # Of a curve of double solutions, as of a stretched arm with a straight wrist, a seed has half of the digits.
     curved = (dimension == 1) & (null > 1) & ~manifold
     for many in np.unique(null[curved]).tolist():
         rows = np.flatnonzero(curved & (null == many))
         roots, found = to_multiple_roots(chain, T[rows], exact[rows], size, many)
         exact[rows[found]] = roots[found]
-    return Local(exact, null, dimension, double, tuple(ways))
+    return Local(exact, x, null, dimension, double, ways, trial)
+
+
+def stand_alone(chain: Chain, T: Array, local: Local, rows: Index, size: float) -> None:
+    """Say of some rows (k,) that no curve leaves them, and bring them to full digits where they are multiple roots."""
+    local.dimension[rows] = 0
+    for i in rows.tolist():
+        local.ways[i] = local.ways[i][:0]
+    null = np.zeros_like(local.null)
+    null[rows] = local.null[rows]
+    _sharpen(chain, T, null, size, local.q, local.double)
 
 
 def _follow(
     chain: Chain, T: Array, x: Array, J: Array, rows: Index, size: float, ways: list[Array], dimension: Index
-) -> None:
-    """Fill in the directions and dimensions of the sets that leave x (s, n), for the rows (k,) that may be on some."""
+) -> Flags:
+    """Fill in the directions and dimensions of the sets that leave x (s, n), for the rows (k,) that may be on some.
+
+    Gives (s,) those of which this is not sure yet: with one null vector the one direction is all that there may be.
+    """
+    trial = np.zeros(len(x), dtype=bool)
     if not len(rows):
-        return
-    cones = _cones(J[rows])
-    place = np.repeat(np.arange(len(rows)), [len(found) for found, _ in cones])
-    tried, index = np.concatenate([found for found, _ in cones]), rows[place]
+        return trial
+    cones_of = cones(J[rows])
+    place = np.repeat(np.arange(len(rows)), [len(found) for found, _ in cones_of])
+    tried, index = np.concatenate([found for found, _ in cones_of]), rows[place]
     on = follows(chain, T[index], x[index], tried, size)
     # A straight line is proven, and on a surface a single direction is no curve's.
     proven = np.array([coaxial_line(J[i], way) is not None for i, way in zip(index, tried, strict=True)], dtype=bool)
-    surface = np.array([flat and found.shape[0] > 1 for found, flat in cones], dtype=bool)[place]
-    doubtful = np.flatnonzero(on & ~proven & ~surface)
+    surface = np.array([flat and found.shape[0] > 1 for found, flat in cones_of], dtype=bool)[place]
+    doubtful = on & ~proven & ~surface
+    single = np.array([flat and found.shape[0] == 1 for found, flat in cones_of], dtype=bool)[place]
+    trial[index[doubtful & single]] = True
+    doubtful = np.flatnonzero(doubtful & ~single)
     if len(doubtful):
         on[doubtful] = leads_away(chain, T[index[doubtful]], x[index[doubtful]], tried[doubtful], size)
+    surfaces = []
     for k, i in enumerate(rows.tolist()):
-        found = tried[on & (place == k)]
-        if len(found):
-            dimension[i] = _dimension(chain, T[i], x[i], found, cones[k][1], size)
+        ways[i] = tried[on & (place == k)]
+        if len(ways[i]):
+            dimension[i] = _dimension(chain, T[i], x[i], ways[i], cones_of[k][1], size)
         if dimension[i] > 1:
-            found = _that_lead_away(chain, T[i], x[i], found, int(dimension[i]), size)
-            dimension[i] = min(len(found), dimension[i])
-        ways[i] = found
-
-
-def _cones(J: Array) -> list[tuple[Array, bool]]:
-    """`cone` of Jacobians (s, 6, n), those with one null vector all at once."""
-    values, Vt = np.linalg.svd(J)[1:]
-    single = J.shape[2] - np.sum(values > ZERO, axis=1) == 1
-    return [(v[-1:], True) if alone else cone(one) for one, v, alone in zip(J, Vt, single.tolist(), strict=True)]
+            surfaces.append(i)
+    leading = _that_lead_away(chain, T, x, J, surfaces, [ways[i] for i in surfaces], dimension, size)
+    for i, found in zip(surfaces, leading, strict=True):
+        ways[i], dimension[i] = found, min(len(found), dimension[i])
+    return trial
 
 
 def _sharpen(chain: Chain, T: Array, null: Index, size: float, exact: Array, double: Flags) -> None:
@@ -164,30 +196,39 @@ def _dimension(chain: Chain, T: Array, x: Array, ways: Array, flat: bool, size: 
     return found
 
 
-def _that_lead_away(chain: Chain, T: Array, x: Array, ways: Array, dimension: int, size: float) -> Array:
-    """Those directions (k, n) of a surface through x (n,) that curves follow on it: all `ways`, if all do."""
-    chosen = _coordinates(ways, dimension)
-    along, locked = np.array([way for way, _ in chosen]), np.array([locks for _, locks in chosen])
-    many = np.broadcast_to(T, (len(along), 4, 4))
-    on = leads_away(chain, many, np.tile(x, (len(along), 1)), along, size, locked)
-    _, J = errors(chain, T[None], x[None], size)
-    on |= np.array([coaxial_line(J[0], way) is not None for way in along])
-    return ways if on.all() else along[on]
+def _that_lead_away(
+    chain: Chain, T: Array, x: Array, J: Array, rows: list[int], ways: list[Array], dimension: Index, size: float
+) -> list[Array]:
+    """Of each surface through some rows of x (s, n) those of its directions (k, n) that curves follow on it.
+
+    They are all `ways`, if all do. J: (s, 6, n) the Jacobians.
+    """
+    chosen = [_coordinates(some, int(dimension[i])) for i, some in zip(rows, ways, strict=True)]
+    index = np.array([i for i, some in zip(rows, chosen, strict=True) for _ in some], dtype=np.intp)
+    if not len(index):
+        return []
+    along = np.array([way for some in chosen for way, _ in some])
+    on = leads_away(chain, T[index], x[index], along, size, np.array([locks for some in chosen for _, locks in some]))
+    on |= np.array([coaxial_line(J[i], way) is not None for i, way in zip(index, along, strict=True)])
+    cuts = np.cumsum([len(some) for some in chosen])[:-1]
+    parts = zip(ways, np.split(along, cuts), np.split(on, cuts), strict=True)
+    return [some if which.all() else those[which] for some, those, which in parts]
 
 
 def trace(chain: Chain, T: Array, q: Array, size: float, way: Array | None = None) -> Curve | None:
     """The self-motion through q (n,) [rad | m] at T (4, 4), along `way` (n,) in x; None where there is none."""
-    local = classify(chain, T[None], q[None], size)
+    local = suspected(chain, T[None], q[None], size)
     if not local.dimension[0]:
         return None
     which = 0 if way is None else int(np.argmax(np.abs(local.ways[0] @ way)))
     return traced_sets(chain, T[None], local, [(0, which)], size)[0]
 
 
-def traced_sets(chain: Chain, T: Array, local: Local, chosen: list[tuple[int, int]], size: float) -> list[Curve]:
+def traced_sets(chain: Chain, T: Array, local: Local, chosen: list[tuple[int, int]], size: float) -> list[Curve | None]:
     """The sets through some seeds, each given as (seed, which of its directions); T: (s, 4, 4) the seeds' targets.
 
-    Where the set has more dimensions all its directions are followed.
+    Where the set has more dimensions all its directions are followed. Where no curve leads away from a seed on trial
+    there is None.
     """
     scale = scale_of(chain, size)
     rows: list[tuple[int, Array, Flags]] = []
@@ -207,12 +248,16 @@ def traced_sets(chain: Chain, T: Array, local: Local, chosen: list[tuple[int, in
         np.array([row[1] for row in rows]),
         size,
         np.array([row[2] for row in rows]),
+        trial=local.trial[index],
     )
-    out = []
+    out: list[Curve | None] = []
     for (i, _), (first, last) in zip(chosen, spans, strict=True):
         dimension = int(local.dimension[i])
-        sheets = tuple(curves[first:last]) if dimension > 1 else ()
+        sheets = tuple(one for one in curves[first:last] if one is not None) if dimension > 1 else ()
         head = curves[first]
+        if head is None:
+            out.append(None)
+            continue
         out.append(Curve(head.q, head.tangents, scale, head.closed, head.ended, dimension, sheets))
     return out
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.arcs import arcs_within
+from robokin.inverse.arcs import arcs_of_each
 from robokin.inverse.branches import branch_names
 from robokin.inverse.claims import BASES
 from robokin.inverse.curve_crossings import crossings
@@ -68,11 +68,10 @@ def families_of(request: Request, block: TargetBlock, i: int, q: Array) -> tuple
         return ()
     moving = analysis.moving
     own = len(moving)
-    limits = request.own_limits[moving]
     out = []
-    for motion in block.claims.motions[i]:
+    for motion, own_arcs in zip(block.claims.motions[i], block.arcs(i), strict=True):
         arcs = []
-        for arc in arcs_within(motion.curve, analysis.own, block.turned[i], limits, analysis.size):
+        for arc in own_arcs:
             whole = np.tile(request.middle, (len(arc.q), 1))
             whole[:, moving] = arc.q
             if not request.limits:
@@ -101,14 +100,16 @@ def _redundant_families(request: Request, block: TargetBlock, i: int, q: Array) 
     known = block.every[0][block.every[1] == i]
     seeds = np.concatenate([q, seeds_of(analysis, T, known, limits, request.middle)])
     sets = families(analysis.chain, T[None], seeds, size)
-    crossing = crossings(sets.curves[0], analysis.chain, T, size)
+    curves = sets.curves[0]
+    _, crossing = crossings(curves, analysis.chain, np.broadcast_to(T, (len(curves), 4, 4)), size)
     if len(crossing):
         seeds = np.concatenate([seeds, crossing])
         sets = families(analysis.chain, T[None], seeds, size)
+    curves = sets.curves[0]
+    found = arcs_of_each(curves, analysis.chain, np.broadcast_to(T, (len(curves), 4, 4)), limits, size)
     out = []
-    for number, curve in enumerate(sets.curves[0]):
+    for number, (curve, arcs) in enumerate(zip(curves, found, strict=True)):
         members = np.flatnonzero(sets.of[: len(q)] == number)
-        arcs = arcs_within(curve, analysis.chain, T, limits, size)
         if arcs or len(members):
             solution = int(members[0]) if len(members) else -1
             out.append(Family(curve.joints, curve.dimension, curve.closed, arcs, solution))

@@ -14,6 +14,7 @@ Here x are joint values [rad | size] and lengths are in the arm's size.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -21,8 +22,8 @@ from numpy.typing import NDArray
 
 from robokin.inverse.curve_tracing import BESIDE, Curve
 from robokin.inverse.fronts import LONGEST, SAME, TURN
-from robokin.inverse.null_motion import CLOSES, SLOW_STEPS, corrected, errors, null_spaces, scale_of
-from robokin.inverse.self_motion import Local, classify, traced_sets
+from robokin.inverse.null_motion import CLOSES, SLOW_STEPS, ZERO, corrected, errors, scale_of
+from robokin.inverse.self_motion import Local, stand_alone, suspected, traced_sets
 from robokin.kinematics.chain import Chain
 
 Array = NDArray[np.float64]
@@ -58,35 +59,52 @@ class Families(NamedTuple):
 
 
 def families(
-    chain: Chain, T: Array, seeds: Array, size: float, index: Index | None = None, local: Local | None = None
+    chain: Chain,
+    T: Array,
+    seeds: Array,
+    size: float,
+    index: Index | None = None,
+    known: Mapping[int, Sequence[Curve]] | None = None,
+    alone: bool = True,
 ) -> Families:
-    """Every self-motion that seeds (s, n) [rad | m] are on, for targets T (m, 4, 4); index: (s,) the seeds' targets."""
+    """Every self-motion that seeds (s, n) [rad | m] are on, for targets T (m, 4, 4); index: (s,) the seeds' targets.
+
+    known: those of some targets, by their numbers, that have been followed before; alone: whether seeds that are on
+    none are made exact.
+    """
     index = np.zeros(len(seeds), dtype=np.intp) if index is None else index
     T = T.reshape(-1, 4, 4)
-    local = classify(chain, T[index], seeds, size) if local is None else local
-    curves: list[list[Curve]] = [[] for _ in T]
+    local = suspected(chain, T[index], seeds, size, alone)
+    curves: list[list[Curve]] = [list(known.get(i, ())) if known else [] for i in range(len(T))]
     of = np.full(len(seeds), -1, dtype=np.intp)
     open_: set[int] = set()
+    single: list[int] = []
     # One entry for each direction of a curve, one for all of a surface.
     waiting = [(i, k) for i, ways in enumerate(local.ways) for k in range(len(ways) if local.dimension[i] == 1 else 1)]
     waiting = [(i, k) for i, k in waiting if local.dimension[i] > 0]
+    if known:
+        waiting = _unclaimed(chain, T, waiting, index, curves, of, local, size)
     while waiting:
         chosen = _few_of_each(waiting, index)
+        done = set(chosen)
         traced = traced_sets(chain, T[index], local, chosen, size)
-        same = _pairs_through(chain, T, chosen, traced, index, local, size)
+        single += [entry[0] for entry, curve in zip(chosen, traced, strict=True) if curve is None]
+        found = [(entry, curve) for entry, curve in zip(chosen, traced, strict=True) if curve is not None]
+        same = _pairs_through(chain, T, found, index, local, size)
         kept: list[int] = []
-        for place, (i, _) in enumerate(chosen):
+        for place, ((i, _), curve) in enumerate(found):
             first = next((other for other in kept if (other, place) in same), None)
             if first is None:
                 kept.append(place)
-                curves[index[i]].append(traced[place])
+                curves[index[i]].append(curve)
                 of[i] = len(curves[index[i]]) - 1 if of[i] < 0 else of[i]
             elif of[i] < 0:
-                of[i] = of[chosen[first][0]]
-        done = set(chosen)
+                of[i] = of[found[first][0][0]]
         waiting = [entry for entry in waiting if entry not in done]
         waiting = _within_bounds(waiting, index, curves, of, local, open_)
         waiting = _unclaimed(chain, T, waiting, index, curves, of, local, size)
+    if alone:
+        stand_alone(chain, T[index], local, np.array(single, dtype=np.intp), size)
     return Families(curves, of, local, frozenset(open_))
 
 
@@ -153,20 +171,15 @@ def _unclaimed(
 
 
 def _pairs_through(
-    chain: Chain,
-    T: Array,
-    chosen: list[tuple[int, int]],
-    traced: list[Curve],
-    index: Index,
-    local: Local,
-    size: float,
+    chain: Chain, T: Array, found: list[tuple[tuple[int, int], Curve]], index: Index, local: Local, size: float
 ) -> set[tuple[int, int]]:
-    """The pairs (a, b), a < b, of curves followed from chosen seeds of one target of which a runs through b's seed."""
-    pairs = [(a, b) for b in range(len(chosen)) for a in range(b) if index[chosen[a][0]] == index[chosen[b][0]]]
-    x = np.array([local.q[chosen[b][0]] for _, b in pairs]).reshape(-1, chain.n) / scale_of(chain, size)
-    ways = np.array([local.ways[chosen[b][0]][chosen[b][1]] for _, b in pairs]).reshape(-1, chain.n)
-    targets = T[index[[chosen[b][0] for _, b in pairs]]]
-    through = _through(chain, targets, [traced[a] for a, _ in pairs], x, ways, size)
+    """The pairs (a, b), a < b, of curves followed from seeds of one target of which a runs through b's seed."""
+    entries = [entry for entry, _ in found]
+    pairs = [(a, b) for b in range(len(found)) for a in range(b) if index[entries[a][0]] == index[entries[b][0]]]
+    x = np.array([local.q[entries[b][0]] for _, b in pairs]).reshape(-1, chain.n) / scale_of(chain, size)
+    ways = np.array([local.ways[entries[b][0]][entries[b][1]] for _, b in pairs]).reshape(-1, chain.n)
+    targets = T[index[[entries[b][0] for _, b in pairs]]]
+    through = _through(chain, targets, [found[a][1] for a, _ in pairs], x, ways, size)
     return {pair for pair, on in zip(pairs, through.tolist(), strict=True) if on}
 
 
@@ -190,8 +203,8 @@ def on_curve(curve: Curve, chain: Chain, T: Array, q: Array, size: float) -> Fla
     for part in curve.sheets or (curve,):
         on[_passes([part] * len(x), chain, many, x, size)[0]] = True
     if curve.sheets:
-        for i in np.flatnonzero(~on):
-            on[i] = walks_to(chain, T, curve.x[0], x[i], size)
+        rest = np.flatnonzero(~on)
+        on[rest] = walks_to(chain, T, curve.x[0], x[rest], size)
     return on
 
 
@@ -239,23 +252,27 @@ def _feet(curve: Curve, chain: Chain, x: Array) -> tuple[Index, Array, Array]:
     return rows, points[best] + part * chord[best], t
 
 
-def walks_to(chain: Chain, T: Array, start: Array, end: Array, size: float) -> bool:
-    """Whether steps on the set of solutions at T (4, 4) lead from start (n,) to end (n,) [rad | size]."""
-    x = start
+def walks_to(chain: Chain, T: Array, start: Array, ends: Array, size: float) -> Flags:
+    """(m,) whether steps on the set of solutions at T (4, 4) lead from start (n,) to ends (m, n) [rad | size]."""
+    reached, on = np.zeros(len(ends), dtype=bool), np.arange(len(ends))
+    x = np.tile(start, (len(ends), 1))
     for _ in range(WALK):
-        gap = turned_gap(chain, end - x)
-        distance = float(np.linalg.norm(gap))
-        if distance <= SAME:
-            return True
-        _, J = errors(chain, T[None], x[None], size)
-        null, _ = null_spaces(J[0])
-        step = gap @ null.T @ null
-        length = float(np.linalg.norm(step))
-        if length < 0.05 * distance:
-            return False
-        step *= min(1.0, LONGEST / length)
-        new, off, _ = corrected(chain, T[None], (x + step)[None], size)
-        if off[0] > CLOSES or np.linalg.norm(new[0] - x - step) > 0.5 * np.linalg.norm(step):
-            return False
-        x = new[0]
-    return False
+        gap = turned_gap(chain, ends[on] - x)
+        distance = np.linalg.norm(gap, axis=1)
+        near = distance <= SAME
+        reached[on[near]] = True
+        on, x, gap, distance = on[~near], x[~near], gap[~near], distance[~near]
+        if not len(on):
+            break
+        many = np.broadcast_to(T, (len(on), 4, 4))
+        _, J = errors(chain, many, x, size)
+        values, Vt = np.linalg.svd(J)[1:]
+        felt = Vt[:, : values.shape[1]] * (values > ZERO)[:, :, None]
+        step = gap - ((felt @ gap[:, :, None]).transpose(0, 2, 1) @ felt)[:, 0]
+        length = np.linalg.norm(step, axis=1)
+        step *= np.minimum(1.0, LONGEST / np.maximum(length, 1e-300))[:, None]
+        new, off, _ = corrected(chain, many, x + step, size)
+        goes = (length >= 0.05 * distance) & (off <= CLOSES)
+        goes &= np.linalg.norm(new - x - step, axis=1) <= 0.5 * np.linalg.norm(step, axis=1)
+        on, x = on[goes], new[goes]
+    return reached

@@ -9,14 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robokin.errors import InputError
+from robokin.expected import expect_choice, expect_flag, expect_kind, expect_numbers, expect_whole
 from robokin.inverse.analysis import Task, analysis_of
 from robokin.inverse.blocks import BLOCK
 from robokin.inverse.full_turns import check_turns, with_full_turns, with_turn_counts
 from robokin.inverse.hold import check_held_limits, held_arm, own_near, with_held_joints
-from robokin.inverse.result import BatchResult, Result
+from robokin.inverse.result import BatchResult, Question, Result
 from robokin.inverse.single_answer import FAR, result_of
 from robokin.inverse.target_block import Method, Request, TargetBlock
-from robokin.model import Robot
+from robokin.model import Robot, expect_robot
 from robokin.spatial import nearest_rotation, rotation_error, transform
 from robokin.spatial.rotations import DIGITS_LOST
 from robokin.spatial.transforms import FARTHEST
@@ -53,7 +54,9 @@ def solve_ik(
     """
     poses = target_poses(T)
     alone = poses.ndim == 2
-    batch = solve_many(robot, poses.reshape(-1, 4, 4), limits, near, method, task, most, seed, turns, hold, alone)
+    targets = poses.reshape(-1, 4, 4)
+    batch = solve_many(robot, targets, limits, near, method, task, most, seed, turns, hold, alone)
+    batch = replace(batch, question=Question(robot, targets, task, bool(limits), dict(hold or {})))
     return batch[0] if alone else batch
 
 
@@ -75,7 +78,15 @@ def solve_many(
     With `motions` the self-motions of arms with one joint to spare are followed too, as `solve_ik` does for one pose:
     that takes a tenth of a second each. Those of singular poses always are.
     """
+    robot = expect_robot(robot)
     near = _wished(robot, near)
+    expect_choice(method, METHODS, "method")
+    expect_choice(task, TASKS, "task")
+    limits, turns = expect_flag(limits, "limits"), expect_flag(turns, "turns")
+    most = None if most is None else expect_whole(most, "most", 1)
+    seed = expect_whole(seed, "seed", 0)
+    if hold is not None:
+        expect_kind(hold, Mapping, "hold", "a mapping of joints (from 0) to values, such as {2: 0.35}")
     if hold:
         arm = held_arm(robot, hold)
         if limits:
@@ -101,10 +112,7 @@ def target_poses(T: ArrayLike) -> Array:
     Rotations may be off by `DIGITS_LOST`: a matrix copied from print has three or four digits. Raises InputError for
     what are no rigid transforms, saying how far off.
     """
-    try:
-        poses = np.array(T, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError("a target must be an array of numbers (4, 4) or (m, 4, 4)") from None
+    poses = np.array(expect_numbers(T, "T", "an array of numbers (4, 4) or (m, 4, 4)"))
     if poses.ndim not in (2, 3) or poses.shape[-2:] != (4, 4):
         raise InputError(f"found a target of shape {poses.shape}, expected (4, 4) or (m, 4, 4)")
     if not np.all(np.isfinite(poses)):
@@ -126,7 +134,7 @@ def _wished(robot: Robot, near: ArrayLike | None) -> Array | None:
     """The joint values `near` (n,), checked."""
     if near is None:
         return None
-    near = np.asarray(near, dtype=np.float64)
+    near = expect_numbers(near, "near", f"{robot.n} joint values")
     if near.shape != (robot.n,):
         raise InputError(f"near has {near.size} values, expected {robot.n}: one for each joint of {robot.name}")
     if not np.all(np.isfinite(near)):
@@ -137,10 +145,6 @@ def _wished(robot: Robot, near: ArrayLike | None) -> Array | None:
 def _request(
     robot: Robot, limits: bool, near: Array | None, method: Method, task: Task, most: int | None, seed: int
 ) -> Request:
-    if method not in METHODS:
-        raise InputError(f"found method '{method}', expected {' or '.join(METHODS)}")
-    if task not in TASKS:
-        raise InputError(f"found task '{task}', expected {' or '.join(TASKS)}")
     if robot.n == 0:
         raise InputError(f"{robot.name} has no joints, expected a robot that can move")
     return Request(robot, analysis_of(robot, task), limits, near, method, most, seed)

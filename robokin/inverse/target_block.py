@@ -11,18 +11,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.inverse.analysis import Analysis
+from robokin.inverse.arcs import arcs_of_each
 from robokin.inverse.blocks import solve_block, turned_in_the_open
 from robokin.inverse.branches import branch_names, listed_names
 from robokin.inverse.claims import unclaimed
 from robokin.inverse.closest import TOGETHER, beyond_reach, nearest_configurations
 from robokin.inverse.closing import closing_nearest
-from robokin.inverse.members import Motion
+from robokin.inverse.members import Motion, listed_once
 from robokin.inverse.nearest import free_at, numeric_solutions
-from robokin.inverse.numeric import descend, error_and_jacobian
+from robokin.inverse.numeric import descend
 from robokin.inverse.onto_limits import onto_limits
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.inverse.redundant import MOST_SOUGHT, UNPROVEN, supplemented
+from robokin.inverse.result import Arc
 from robokin.inverse.spread import well_spread
-from robokin.inverse.verify import CLOSES, Found, distinct, merged, nothing, within_limits, wrapped
+from robokin.inverse.verify import CLOSES, Found, distinct, merged, nothing, with_ones_within, within_limits, wrapped
 from robokin.model import Robot
 from robokin.model.robot import tolerated
 from robokin.spatial.transforms import FARTHEST
@@ -86,6 +89,7 @@ class TargetBlock:
         robot, analysis = request.robot, request.analysis
         self.request, self.T = request, T
         self._nearest: dict[int, tuple[Array, float, float]] = {}
+        self._arcs: dict[int, list[tuple[Arc, ...]]] = {}
         found, self.claims = nothing(robot.n), unclaimed(len(T))
         if request.method != "numeric":
             found, self.claims = solve_block(analysis, T, request.own_limits, request.near, request.middle)
@@ -119,8 +123,12 @@ class TargetBlock:
             missing = np.flatnonzero(~answered)
             if len(missing):
                 more = search_for(analysis, T[missing], request.own_limits, request.middle, request.seed)
-                both = distinct(_with_more(found, more, missing), robot.revolute, analysis.size)
-                found, inside = _limited(request, both)
+                if analysis.solver is not None and not analysis.open:
+                    more = self._each_once(missing, more)
+                both = _with_more(found, more, missing)
+                once = distinct(both, robot.revolute, analysis.size)
+                once, _ = with_ones_within(once, both, robot.revolute, request.own_limits, analysis.size)
+                found, inside = _limited(request, once)
         self.closing = np.bincount(found.index, minlength=len(T))
         self.every = found.q, found.index
         if request.limits:
@@ -131,6 +139,34 @@ class TargetBlock:
         whole = len(self.found) == len(found)
         self.count = self.within if whole else np.bincount(self.found.index, minlength=len(T))
         self.cut = self.within > self.count
+
+    def _each_once(self, targets: NDArray[np.intp], more: Found) -> Found:
+        """What a search found for some targets (k,), by these, with each multiple root and each self-motion once."""
+        request, analysis = self.request, self.request.analysis
+        moving, motions = analysis.moving, self.claims.motions
+        order = np.argsort(more.index, kind="stable")
+        found = Found(more.index[order], more.q[order][:, moving], more.position[order], more.angle[order])
+        found = distinct(found, analysis.own.revolute, analysis.size)
+        followed = {k: [one.curve for one in motions.get(i, ())] for k, i in enumerate(targets.tolist())}
+        wish = None if request.near is None else request.near[moving]
+        found, said, _, _ = listed_once(
+            analysis.own,
+            analysis.solver,
+            self.T[targets],
+            found,
+            analysis.size,
+            request.own_limits[moving],
+            request.middle[moving],
+            wish,
+            followed,
+        )
+        for k, some in said.items():
+            again = [one.curve for one in some]
+            others = [one for one in motions.get(int(targets[k]), ()) if all(one.curve is not curve for curve in again)]
+            motions[int(targets[k])] = [*others, *some]
+        q = np.tile(request.middle, (len(found), 1))
+        q[:, moving] = found.q
+        return Found(found.index, q, found.position, found.angle)
 
     @cached_property
     def names(self) -> list[str]:
@@ -171,6 +207,22 @@ class TargetBlock:
     def beyond(self) -> NDArray[np.bool_]:
         """Which targets are farther off than the arm is long."""
         return beyond_reach(self.request.analysis, self.T, self.request.own_limits)
+
+    def arcs(self, i: int) -> list[tuple[Arc, ...]]:
+        """Of each self-motion of target i the pieces within the limits, in the joints that are solved for.
+
+        Together they take less time each: with these those of the next targets are found.
+        """
+        if i not in self._arcs:
+            motions = self.claims.motions
+            targets = sorted(k for k in motions if k >= i)[:TOGETHER]
+            pairs = [(k, motion.curve) for k in targets for motion in motions[k]]
+            analysis = self.request.analysis
+            limits, T = self.request.own_limits[analysis.moving], self.turned[[k for k, _ in pairs]]
+            found = arcs_of_each([curve for _, curve in pairs], analysis.own, T, limits, analysis.size)
+            for (k, _), arcs in zip(pairs, found, strict=True):
+                self._arcs.setdefault(k, []).append(arcs)
+        return self._arcs[i]
 
     def nearest(self, i: int) -> tuple[Array, float, float]:
         """The configuration (n,) closest to target i, which has no solution, and its distance [m] and angle [rad].

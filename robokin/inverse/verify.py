@@ -295,3 +295,24 @@ def within_limits(
             columns[i] = turned
         inside &= fits
     return q, inside
+
+
+def with_ones_within(
+    listed: Found, found: Found, revolute: NDArray[np.bool_], limits: Array, size: float
+) -> tuple[Found, Index]:
+    """What is listed, by target, and of each target with none within limits (n, 2) the most exact one found that is.
+
+    Of roots that joint values hardly tell apart one outside the limits may stand for one within. Also the targets (k,)
+    to which one was added.
+    """
+    if np.all(np.isinf(limits)) or not len(found):
+        return listed, np.empty(0, dtype=np.intp)
+    inside = within_limits(found.q, revolute, limits, None)[1]
+    answered = listed.index[within_limits(listed.q, revolute, limits, None)[1]]
+    rows = np.flatnonzero(inside & ~np.isin(found.index, answered))
+    if not len(rows):
+        return listed, np.empty(0, dtype=np.intp)
+    rows = rows[np.lexsort((np.maximum(found.position[rows] / size, found.angle[rows]), found.index[rows]))]
+    rows = rows[np.unique(found.index[rows], return_index=True)[1]]
+    both = merged(listed, found.pick(rows))
+    return both.pick(np.argsort(both.index, kind="stable")), found.index[rows]

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from robokin.inverse.analysis import Analysis, General
 from robokin.inverse.complex_newton import complex_refine, on_the_way_out, regular, regular_and_distinct
 from robokin.inverse.elimination import REAL
-from robokin.inverse.few_rows import errors
 from robokin.inverse.loop import ComplexCandidates
 from robokin.inverse.nearest import SINGULAR as ON_CURVE
 from robokin.inverse.newton import determinants
-from robokin.inverse.numeric import descend, error_and_jacobian
+from robokin.inverse.numeric import descend
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.inverse.verify import CLOSES, VIRTUAL, Found, Poses, closing_distances, distinct, verified
 from robokin.kinematics.chain import Chain
 
@@ -81,7 +81,11 @@ def solve_window(analysis: Analysis, T: Array, count: bool = True) -> tuple[Foun
         found = verified(loop, six.chain, poses, closing, candidates)
         assert candidates.loose is not None
         assert candidates.near is not None
-        doubt = Doubt(candidates.loose, candidates.near, np.bincount(candidates.index, minlength=len(T)))
+        tried = np.bincount(candidates.index, minlength=len(T))
+        # A short lever decides how a joint stands: rounding of it may put what is beyond out of reach.
+        unsure = candidates.near if candidates.few is None else candidates.near & ~candidates.few
+        lost = unsure & (tried < (candidates.leaves or 0))
+        doubt = Doubt(candidates.loose | lost, candidates.near, tried)
     if six.virtual:
         found = _own_joints(analysis, T, found)
     return found, doubt
@@ -154,7 +158,7 @@ def least_singular_values(chain: Chain, q: Array, size: float) -> Array:
     """The least singular value (s,) of the Jacobian, lengths in sizes, at q (s, n) [rad | m]."""
     if not len(q):
         return np.empty(0)
-    _, J = errors(chain, np.broadcast_to(np.eye(4), (len(q), 4, 4)), q, size)
+    _, J = error_and_jacobian(chain, np.broadcast_to(np.eye(4), (len(q), 4, 4)), q, size)
     return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
 
 
@@ -164,7 +168,7 @@ def nearly_singular(chain: Chain, q: Array, size: float, below: Array) -> NDArra
     The product of the other singular values is at most (|J|² / 5)^(5/2), so that for six joints the
     determinant answers for most.
     """
-    _, J = errors(chain, np.broadcast_to(np.eye(4), (len(q), 4, 4)), q, size)
+    _, J = error_and_jacobian(chain, np.broadcast_to(np.eye(4), (len(q), 4, 4)), q, size)
     open_ = np.ones(len(q), dtype=bool)
     if chain.n == 6:
         open_ = np.abs(np.linalg.det(J)) <= below * (np.einsum("sij,sij->s", J, J) / 5.0) ** 2.5

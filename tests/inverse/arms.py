@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from inverse.truth import Scale, least_singular_value
 
 import robokin
 from robokin.description import library_names, load_any
+from robokin.description.read import read_text
 from robokin.model import Joint, JointType, Robot
 
 RIGHT = np.pi / 2
@@ -127,3 +130,46 @@ def pose_of(robot, q_degrees):
     """The pose (4, 4) of joint values in degrees and metres."""
     q = np.where(robot.revolute, np.radians(q_degrees), q_degrees)
     return robokin.forward_kinematics(robot, q)
+
+
+def with_limits(robot, limits):
+    """The robot with other limits (n, 2) [rad | m]; every row moves."""
+    rows = (replace(row, limits=tuple(map(float, own))) for row, own in zip(robot.rows, limits, strict=True))
+    return replace(robot, rows=tuple(rows))
+
+
+OFFSET_WRIST = read_text(
+    """
+robokin: 1
+name: An arm with an offset wrist, whose limits are met by two joints at once
+source: derived from the URDF of an early big YAM (github.com/i2rt-robotics/i2rt)
+units: {length: mm, angle: deg}
+parameters: {upper_arm: sqrt(378.697**2 + 68**2), slant: "atan2(68, 378.697)"}
+base: Rot(x, 180)
+joints:
+  - {type: revolute, offset: 0,           d: -130.5519, a: 21.9115,     alpha: 90,   limits: [-150, 175]}
+  - {type: revolute, offset: slant - 180, d: 0,         a: upper_arm,   alpha: 180,  limits: [0, 180]}
+  - {type: revolute, offset: slant - 180, d: 0,         a: 381.981,     alpha: -180, limits: [0, 180]}
+  - {type: revolute, offset: 0,           d: -0.4568,   a: 73.9989,     alpha: 90,   limits: [-90, 90]}
+  - {type: revolute, offset: -90,         d: -0.1993,   a: 0.000239858, alpha: 90,   limits: [-90, 90]}
+  - {type: revolute, offset: 180,         d: -35.6,     a: 0,           alpha: 0,    limits: [-120, 120]}
+"""
+)
+"""An arm of six joints, two of whose limits one configuration of a self-motion is at."""
+
+SPHERICAL_WRIST = read_text(
+    """
+robokin: 1
+name: An arm with a shoulder to the side and a spherical wrist
+source: the table of the Stäubli TX2-90L in ARTE, a Robotics Toolbox for Education
+units: {length: mm, angle: deg}
+joints:
+  - {type: revolute, offset: 0,   d: 478, a: 50,  alpha: -90}
+  - {type: revolute, offset: -90, d: 50,  a: 500, alpha: 0}
+  - {type: revolute, offset: 90,  d: 0,   a: 0,   alpha: 90}
+  - {type: revolute, offset: 0,   d: 550, a: 0,   alpha: -90}
+  - {type: revolute, offset: 0,   d: 0,   a: 0,   alpha: 90}
+  - {type: revolute, offset: 0,   d: 100, a: 0,   alpha: 0}
+"""
+)
+"""One without limits."""

@@ -6,19 +6,24 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from inverse.arms import configurations, random_chain
+from inverse.arms import OFFSET_WRIST, SPHERICAL_WRIST, configurations, random_chain
 from inverse.judge import faults, listed
 from inverse.loops import RIGHT, parallel_loop, spherical_loop
 from inverse.truth import Scale, least_singular_value, search
 
 import robokin
+from robokin.inverse import target_block
 from robokin.inverse.analysis import analysis_of, trial_closing
+from robokin.inverse.claims import unclaimed
 from robokin.inverse.homotopy import Homotopy
 from robokin.inverse.loop import loop_of
 from robokin.inverse.monodromy import two_starts
+from robokin.inverse.null_motion import null_spaces
 from robokin.inverse.parallel import ThreeParallel
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.inverse.spherical import SphericalTriple
-from robokin.kinematics.chain import chain_of
+from robokin.inverse.verify import Found, nothing
+from robokin.kinematics.chain import chain_of, chain_size
 from robokin.model import Joint, JointType, Robot
 
 SCARAS = ("scara", "adept-one", "tp80")
@@ -84,7 +89,7 @@ def test_a_straight_scara_has_one_solution_and_that_is_said(name, rng):
         assert result.complete, result.certificate
 
 
-@pytest.mark.parametrize("name", ["stanford", "stanford-rtb"])
+@pytest.mark.parametrize("name", ["stanford", "stanford-arte"])
 def test_a_slide_beside_a_straight_wrist_leaves_nothing_open(name, rng):
     """The wrist's self-motions are all there are where the levers of the other axes are long."""
     robot = robokin.load(name)
@@ -267,3 +272,75 @@ def test_without_limits_the_wish_itself_is_first_however_often_its_joints_are_tu
         result = robokin.solve_ik(robot, robokin.forward_kinematics(robot, q), limits=False, near=q)
         assert np.max(np.abs(result.solutions[0].q - q)) < 1e-6
         assert result.solutions[0].within_limits == bool(robot.within_limits(result.solutions[0].q))
+
+
+def test_a_self_motion_is_not_given_up_for_roots_beside_it():
+    """With a stretched arm and a straight wrist the pose is hardly off at what is beside the self-motion."""
+    robot, rng = SPHERICAL_WRIST, np.random.default_rng(6)
+    q = np.radians([[-90, 90, 180, 90, 180, 180], [90, 90, 180, 90, -180, -180]])
+    others = np.radians(rng.integers(-4, 5, (6, 6)) * 45.0)
+    others[:, [2, 4]] = np.radians([180.0, 180.0])
+    for values in np.concatenate([q, others]):
+        result, broken = answered(robot, values)
+        assert broken == []
+        assert (4, 6) in [family.joints for family in result.families]
+
+
+@pytest.mark.parametrize("q", [[-90, 180, 180, 0, -90, 0], [30, 180, 180, 0, -90, 60]])
+def test_a_self_motion_that_comes_back_from_one_limit_as_it_goes_beyond_another(q):
+    """One point of it is within the limits, 0.005 rad from a longer piece."""
+    robot = OFFSET_WRIST
+    result, broken = answered(robot, np.radians(q))
+    assert broken == []
+    points = [arc.q for family in result.families for arc in family.arcs if len(arc.q) == 1]
+    assert any(np.allclose(point[0], np.radians(q), rtol=0, atol=1e-8) for point in points)
+
+
+def test_what_a_search_finds_of_a_double_root_is_listed_once(monkeypatch):
+    robot = robokin.load("ur5e")
+    q = np.radians([20.0, -70.0, 0.0, 40.0, 50.0, 10.0])
+    T, chain = robokin.forward_kinematics(robot, q), analysis_of(robot).chain
+    v = null_spaces(error_and_jacobian(chain, T[None], q[None], chain_size(chain))[1][0])[0][0]
+
+    def search(analysis, T, *rest):
+        both = Found(np.zeros(2, dtype=np.intp), np.stack([q + 4e-6 * v, q - 5e-6 * v]), np.zeros(2), np.zeros(2))
+        error, _ = error_and_jacobian(analysis.chain, np.repeat(T, 2, axis=0), both.q, analysis.size)
+        return replace(both, position=np.linalg.norm(error[:, :3], axis=1), angle=np.linalg.norm(error[:, 3:], axis=1))
+
+    monkeypatch.setattr(target_block, "solve_block", lambda analysis, T, *rest: (nothing(6), unclaimed(len(T))))
+    monkeypatch.setattr(target_block, "closing_nearest", search)
+    (solution,) = robokin.solve_ik(robot, T).solutions
+    assert np.max(np.abs(solution.q - q)) < 1e-10
+
+
+def test_a_closed_form_whose_lost_roots_are_beside_a_short_lever_is_looked_at_again():
+    """Three roots meet, which takes five digits of them, and the elbow does not reach: with q4 = 0 four axes are
+    parallel and turn as a four-bar linkage."""
+    robot = random_chain(np.random.default_rng([561, 82]))
+    q = configurations(robot, Scale(robot), np.random.default_rng(3), 2, "q4 = 0")
+    first = [94.92727861749901, -125.95761559948428, -38.60742138213164, 0.0, -171.78747244697522, 70.34079013161018]
+    for values in np.concatenate([np.radians([first]), q]):
+        result, broken = answered(robot, values)
+        assert broken == []
+        assert result.families
+
+
+WITHIN = [
+    # Numbers of random chains (seed 560), and configurations [deg | mm] beside or at limits at which roots are so near
+    # to each other that joint values hardly tell them apart: of the chains' joints some are within, some outside.
+    (143, [89.99994874354839, 459.99996127192395, 424.9996714513121,
+           -179.99994551396736, -89.99996596864852, 44.99998070233786]),
+    (163, [150.0, 120.0, 266.6666666666667, 0.0, 0.0, 420.0]),
+    (252, [950.0, -120.0, 0.0, 0.0, 120.0, 90.0]),
+    (264, [680.0, -150.0, -180.0, 340.0]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("number", "values"), WITHIN)
+def test_a_root_within_the_limits_is_not_given_up_for_one_outside(number, values):
+    robot = random_chain(np.random.default_rng([560, number]))
+    q = np.where(robot.revolute, np.radians(values), np.array(values) / 1000.0)
+    T = robokin.forward_kinematics(robot, q)
+    for result in (robokin.solve_ik(robot, T), robokin.solve_ik(robot, T[None])[0]):
+        assert result.solutions
+        assert all(solution.within_limits for solution in result.solutions)

@@ -138,7 +138,7 @@ def names_repeat(robot, q):
     return out
 
 
-@pytest.mark.parametrize("name", ["ur5", "ur3e", "ur10e", "stanford", "stanford-rtb", "puma560", "irb1600", "cr5"])
+@pytest.mark.parametrize("name", ["ur5", "ur3e", "ur10e", "stanford", "stanford-arte", "puma560", "irb1600", "cr5"])
 def test_every_solution_has_a_name_of_its_own(name):
     """ur5: the same q1 was called left and right at 53 of 400 random poses; stanford: at every one."""
     robot = robokin.load(name)

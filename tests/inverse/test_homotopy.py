@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import json
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from inverse.loops import closing_of, gaps, named, random_links, with_types
 
+import robokin
+from robokin.inverse.analysis import General, analysis_of
 from robokin.inverse.complex_newton import complex_refine, distinct, regular, regular_and_distinct
 from robokin.inverse.homotopy import Homotopy
 from robokin.inverse.loop import Loop, loop_of
 from robokin.inverse.newton import refine
 from robokin.inverse.paths import points_at, points_of
+from robokin.inverse.second_look import known_solutions
+from robokin.inverse.starts_close_by import CloseBy
 from robokin.kinematics.chain import Chain, standard_dh
 from robokin.spatial import nearest_rotation
 
@@ -218,3 +222,33 @@ def test_singular_candidates_and_those_that_do_not_close_are_not_counted():
     index, residual = np.arange(3), np.array([0.0, 1e-15, 1e-3])
     assert regular_and_distinct(loop, index, q, residual).tolist() == [True, True, False]
     assert not regular_and_distinct(straight, index, np.zeros((3, 6)), np.zeros(3)).any()  # q5 = 0
+
+
+@pytest.mark.parametrize("name", ["xarm6", "hc10", "puma560", "ur5e"])
+def test_starts_close_by_lead_where_far_ones_do(name):
+    """The kinds of ends are as many, and the regular ones the same: at random poses and at singular ones."""
+    analysis = analysis_of(robokin.load(name))
+    loop, solver = analysis.loop, analysis.solver
+    beside = CloseBy(loop, getattr(solver, "first", solver) if isinstance(solver, General) else solver, analysis.number)
+    rng = np.random.default_rng([3, len(name)])
+    q = np.concatenate([poses_of(loop, rng, kind, 4) for kind in ("random", "q4 = 0", "90°", "30°")])
+    closing = closing_of(loop, q)
+    near = beside(closing)
+    assert len(near.chosen) > 4
+    for around, values in zip(near.closing, near.values, strict=True):
+        # All solutions there, and each but once.
+        flat, index = values.reshape(-1, 6), np.repeat(np.arange(len(values)), values.shape[1])
+        exact, residual = complex_refine(loop, around, index, flat, 1)
+        assert np.max(residual) < 1e-9
+        assert np.max(np.abs(exact - flat)) < 1e-6
+        assert regular_and_distinct(loop, index, exact, residual).all()
+    known = partial(known_solutions, loop, solver, analysis.number)
+    short, far = Homotopy(loop, known, beside).account(closing), Homotopy(loop, known).account(closing)
+    both = short.closed & far.closed
+    assert both.sum() >= 14
+    for kind in ("regular", "real", "singular", "infinite"):
+        assert np.array_equal(getattr(short, kind)[both], getattr(far, kind)[both]), kind
+    for i in np.flatnonzero(both):
+        ours, theirs = short.values[short.index == i], far.values[far.index == i]
+        off = np.max(np.abs(gaps(loop, ours[:, None], theirs[None])), axis=2)
+        assert np.all(np.min(off, axis=1, initial=9.0) < 1e-8)

@@ -183,7 +183,7 @@ def test_a_task_of_position_leaves_the_hand_free():
         (([0.0] * 5, np.eye(4)), "expected 6"),
         (([np.nan] * 6, np.eye(4)), "finite"),
         (([0.0] * 6, np.ones((4, 4))), "homogeneous"),
-        (([0.0] * 6, np.eye(4), 0), "expected 1 to"),
+        (([0.0] * 6, np.eye(4), 0), "from 1 to"),
     ],
 )
 def test_what_is_no_path(arguments, message):

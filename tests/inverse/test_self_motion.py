@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from inverse.arms import OFFSET_WRIST, SPHERICAL_WRIST
 
 import robokin
 from robokin.inverse.arcs import arcs_within
-from robokin.inverse.few_rows import errors
 from robokin.inverse.loop import chain_size
 from robokin.inverse.nearest_member import nearest_on
-from robokin.inverse.numeric import error_and_jacobian
+from robokin.inverse.pose_error import error_and_jacobian
 from robokin.inverse.self_motion import classify, trace
 from robokin.inverse.solution_sets import families, on_curve
 from robokin.kinematics.chain import chain_of
 from robokin.model import Joint, JointType, Robot
+from robokin.spatial import rotation_from_axis_angle
 
 R, P = JointType.REVOLUTE, JointType.PRISMATIC
 TURN = 2 * np.pi
@@ -37,7 +38,7 @@ CURVES = [
     ("stanford", (10, 20, 0.3, 40, 0, 20), (4, 6)),
     ("ur5e", (10, -80, 70, 20, 0, 30), (2, 3, 4, 6)),
     ("yam", (-60, 180, 60, 60, 90, 0), (2, 3, 4, 6)),
-    ("big-yam", (150, 0, 0, -90, 90, 0), (2, 3, 4, 6)),
+    ("big-yam", (-150, 0, 0, 90, -90, 0), (2, 3, 4, 6)),
     ("viperx300s", (120, -90, 90, 120, 30, 0), (1, 4, 5, 6)),
     ("tx2-60", (-90, 0, 180, 90, 180, 180), (4, 6)),
     ("cr5", (180, -120, 150, 0, 0, -60), (2, 3, 4, 6)),
@@ -88,22 +89,29 @@ def assert_reaches(robot, T, q):
     assert np.max(np.abs(gap)) < 1e-9
 
 
-def test_few_rows_agree_with_columns(rng):
+def test_error_and_jacobian_of_few_and_of_many(rng):
+    h = 1e-6
     for name in ("puma560", "panda", "stanford", "scara"):
         robot, chain, size, _, _ = arm(name, np.zeros(robokin.load(name).n))
+        scale = np.where(robot.revolute, 1.0, size)
         q = rng.uniform(-3, 3, (2100, robot.n))
-        T = robokin.forward_kinematics(robot, q[::-1])
-        for some in (q[:0], q[:1], q[:40], q[:81], q):
-            mine = errors(chain, T[: len(some)], some, size)
-            assert [part.shape for part in mine] == [(len(some), 6), (len(some), 6, robot.n)]
-        # Beside a half turn the direction of the error has fewer digits.
-        for ours, theirs in zip(errors(chain, T, q, size), error_and_jacobian(chain, T, q, size), strict=True):
-            assert np.allclose(ours, theirs, rtol=0, atol=1e-9)
-        few = errors(chain, T[:40], q[:40], size)
-        for ours, theirs in zip(few, error_and_jacobian(chain, T[:40], q[:40], size), strict=True):
-            assert np.allclose(ours, theirs, rtol=0, atol=1e-12)
+        found, T = robokin.forward_kinematics(robot, q), robokin.forward_kinematics(robot, q[::-1])
+        whole = error_and_jacobian(chain, T, q, size)
+        for k in (0, 1, 40, 81):
+            part = error_and_jacobian(chain, T[:k], q[:k], size)
+            assert [array.shape for array in part] == [(k, 6), (k, 6, robot.n)]
+            assert all(np.allclose(a, b[:k], rtol=0, atol=1e-9) for a, b in zip(part, whole, strict=True))
+        e, J = whole
+        assert np.allclose(e[:, :3] * size, T[:, :3, 3] - found[:, :3, 3], atol=1e-12)
+        for i in range(0, 2100, 50):
+            angle = np.linalg.norm(e[i, 3:])
+            assert np.allclose(rotation_from_axis_angle(e[i, 3:], angle) @ found[i, :3, :3], T[i, :3, :3], atol=1e-6)
+        for j in range(robot.n):
+            ahead, behind = (robokin.forward_kinematics(robot, q + d * scale * np.eye(robot.n)[j]) for d in (h, -h))
+            slope = (error_and_jacobian(chain, ahead, q, size)[0] - error_and_jacobian(chain, behind, q, size)[0]) / 2
+            assert np.allclose(slope / h, J[:, :, j], atol=1e-7)
     half = robokin.forward_kinematics(robot, [0.0, 0.0, 0.0, np.pi])[None]
-    e, _ = errors(chain, half, np.zeros((1, 4)), size)
+    e, _ = error_and_jacobian(chain, half, np.zeros((1, 4)), size)
     assert np.isclose(np.linalg.norm(e[0, 3:]), np.pi)
 
 
@@ -201,7 +209,7 @@ def _margins(robot, q):
 
 
 def test_limits_touched_in_one_configuration():
-    robot, chain, size, q, T = arm("big-yam", (150, 0, 0, -90, 90, 0))
+    robot, chain, size, q, T = arm("big-yam", (-150, 0, 0, 90, -90, 0))
     (arc,) = arcs_within(trace(chain, T, q, size), chain, T, robot.limits, size)
     assert np.allclose(arc.q, q[None], rtol=0, atol=1e-9)
     # The same from other members: the touch is then between two of the curve's points.
@@ -385,3 +393,25 @@ def test_round_configurations_lie_on_their_own_arcs(name, rng):
         assert any(
             np.max(np.abs(nearest_on(curve, chain, T[i], q[i], robot.limits, size) - q[i])) < 1e-9 for curve in curves
         )
+
+
+def test_a_self_motion_is_found_from_where_it_crosses_another_one():
+    # A wrist that is folded back turns on itself; where its middle axis meets the elbow's fold two null vectors are.
+    robot = SPHERICAL_WRIST
+    q = np.radians([-90.0, 90.0, 180.0, 90.0, 180.0, 180.0])
+    result = robokin.solve_ik(robot, robokin.forward_kinematics(robot, q))
+    assert result.complete
+    (family,) = result.families
+    assert family.joints == (4, 6)
+
+
+def test_two_limits_that_are_met_at_once_leave_one_configuration_of_a_self_motion():
+    # Joint 2 comes back into its limits where joint 3 leaves its own.
+    robot = OFFSET_WRIST
+    q = np.radians([-90.0, 180.0, 180.0, 0.0, -90.0, 0.0])
+    result = robokin.solve_ik(robot, robokin.forward_kinematics(robot, q))
+    (family,) = result.families
+    points = [arc.q[0] for arc in family.arcs if len(arc.q) == 1]
+    assert any(np.max(np.abs(point - q)) < 1e-9 for point in points)
+    near = robokin.solve_ik(robot, robokin.forward_kinematics(robot, q), near=q)
+    np.testing.assert_allclose(near.solutions[0].q, q, atol=1e-9)

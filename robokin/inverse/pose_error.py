@@ -1,11 +1,10 @@
-"""Error and Jacobian of a chain for the configurations that curves are followed by: a handful, or some hundreds.
+"""Error and Jacobian of a chain for many configurations at once, be they a handful or some thousands.
 
-Statement. The same as `numeric.error_and_jacobian`, in less time.
+Statement. Give the difference of the poses of a chain from targets, and how it changes with the joint values.
 Derivation. A joint and the constant after it, J(q) C, are linear in (1, cos q, sin q, q): all joints' matrices come
 from one product, and n products of matrices (4, 4) follow. For ten configurations the interpreter's share of the work
 is what counts. For hundreds a joint mixes two columns of the frame before it, and the constant after it all four, of
-all configurations at once: one product of matrices (4, 4) and (4, 3 s). The columns entry by entry of
-`kinematics.columns` are for thousands; what they give for one configuration does not depend on the others.
+all configurations at once: one product of matrices (4, 4) and (4, 3 s).
 With the columns r_k of the rotation that is found and t_k of the one that is wished for the vector of the skew part of
 their difference is ½ Σ r_k × t_k.
 Degenerate case. None.
@@ -53,8 +52,11 @@ def _joint_parts(chain: Chain) -> Array:
     return parts
 
 
-def errors(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
-    """The error (s, 6) and the Jacobian (s, 6, n) at q (s, n) against T (s, 4, 4), as `error_and_jacobian` has them."""
+def error_and_jacobian(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
+    """The error (s, 6) of the poses at q (s, n) [rad | m] against T (s, 4, 4), and the Jacobian (s, 6, n).
+
+    Lengths, also those of prismatic joints, are in sizes.
+    """
     if len(q) <= FEW:
         return _of_few(chain, T, q, size)
     starts = range(0, len(q), TOGETHER)
@@ -65,7 +67,7 @@ def errors(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]
 
 
 def _of_few(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
-    """`errors`, by a product of matrices for each configuration and joint."""
+    """`error_and_jacobian`, by a product of matrices for each configuration and joint."""
     s, n = q.shape
     values = (q + chain.offsets).T
     weights = np.empty((n, s, 4))
@@ -90,7 +92,7 @@ def _of_few(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array
 
 
 def _of_many(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
-    """`errors`, by a product of matrices for each joint."""
+    """`error_and_jacobian`, by a product of matrices for each joint."""
     s, n = q.shape
     constants, revolute = chain.constants.transpose(0, 2, 1), chain.revolute.tolist()
     values = (q + chain.offsets).T
@@ -123,8 +125,13 @@ def _of_many(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Arra
     return _pose_error(T, X, size), np.ascontiguousarray(J.transpose(2, 0, 1))
 
 
+def pose_error(T: Array, found: Array, size: float) -> Array:
+    """(s, 6): origin's distance [size] and rotation vector [rad] from found to T, (s, 4, 4), in the base's axes."""
+    return _pose_error(T, found[:, :3].transpose(2, 1, 0), size)
+
+
 def _pose_error(T: Array, X: Array, size: float) -> Array:
-    """As `numeric.pose_error`, for the columns (4, 3, s) of what was found."""
+    """The error (s, 6) for the columns x, y, z, p (4, 3, s) of what was found."""
     wish = T[:, :3].transpose(2, 1, 0)
     e = np.empty((6, X.shape[2]))
     np.subtract(wish[3], X[3], out=e[:3])
