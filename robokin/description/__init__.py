@@ -2,22 +2,37 @@
 
 from __future__ import annotations
 
+from os import PathLike, fsdecode
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from robokin.description.library import library_names, load_any
-from robokin.description.read import read_file, read_text
-from robokin.errors import InputError, shown
-from robokin.model import Mechanism, Robot, WheeledBase
+from robokin.errors import InputError, InputTypeError, shown
+from robokin.expected import described
+
+if TYPE_CHECKING:
+    from robokin.description.read import read_file as read_file
+    from robokin.description.read import read_text as read_text
+    from robokin.model import Mechanism, Robot, WheeledBase
 
 __all__ = ["library_names", "load", "load_any", "load_mechanism", "load_wheeled", "read_file", "read_text"]
 
-_KINDS = {Robot: "robot", Mechanism: "mechanism", WheeledBase: "wheeled base"}
+_KINDS = {"Robot": "robot", "Mechanism": "mechanism", "WheeledBase": "wheeled base"}
 """What a message calls that which a description describes."""
 
 
 def _kind(entry: Robot | Mechanism | WheeledBase) -> str:
     """`robot`, `mechanism` or `wheeled base`."""
-    return _KINDS[type(entry)]
+    return _KINDS[type(entry).__name__]
+
+
+def __getattr__(name: str) -> object:
+    """Import the reader on first use: who lists the library needs none."""
+    if name not in ("read_file", "read_text"):
+        raise AttributeError(f"module 'robokin.description' has no attribute {name!r}")
+    from robokin.description import read
+
+    return getattr(read, name)
 
 
 def load(name_or_path: str | Path, **parameters: float | str) -> Robot:
@@ -28,6 +43,8 @@ def load(name_or_path: str | Path, **parameters: float | str) -> Robot:
     Raises InputError for an unknown name or a file that cannot be read, DescriptionError with line and
     column for a wrong description.
     """
+    from robokin.model import Robot
+
     loaded = _loaded(name_or_path, parameters)
     if not isinstance(loaded, Robot):
         raise InputError(f"{name_or_path} is a {_kind(loaded)}, expected a robot")
@@ -36,6 +53,8 @@ def load(name_or_path: str | Path, **parameters: float | str) -> Robot:
 
 def load_mechanism(name_or_path: str | Path, **parameters: float | str) -> Mechanism:
     """The mechanism with a library name ("four-bar") or in a file, as `load` has it of robots."""
+    from robokin.model import Mechanism
+
     loaded = _loaded(name_or_path, parameters)
     if not isinstance(loaded, Mechanism):
         raise InputError(f"{name_or_path} is a {_kind(loaded)}, expected a mechanism")
@@ -44,6 +63,8 @@ def load_mechanism(name_or_path: str | Path, **parameters: float | str) -> Mecha
 
 def load_wheeled(name_or_path: str | Path, **parameters: float | str) -> WheeledBase:
     """The wheeled base with a library name ("differential-drive") or in a file, as `load` has it of robots."""
+    from robokin.model import WheeledBase
+
     loaded = _loaded(name_or_path, parameters)
     if not isinstance(loaded, WheeledBase):
         raise InputError(f"{name_or_path} is a {_kind(loaded)}, expected a wheeled base")
@@ -51,6 +72,11 @@ def load_wheeled(name_or_path: str | Path, **parameters: float | str) -> Wheeled
 
 
 def _loaded(name_or_path: str | Path, parameters: dict[str, float | str]) -> Robot | Mechanism | WheeledBase:
+    if not isinstance(name_or_path, str | Path):
+        if not isinstance(name_or_path, PathLike):
+            found = described(name_or_path)
+            raise InputTypeError(f"name_or_path: found {found}, expected a name of the library or a file's path")
+        name_or_path = Path(fsdecode(name_or_path))
     return load_any(name_or_path, {name: _expression(name, value) for name, value in parameters.items()})
 
 
@@ -59,6 +85,8 @@ def _expression(name: str, value: float | str) -> str:
     if isinstance(value, str):
         return value
     try:
-        return repr(float(value))
+        if not isinstance(value, bool):
+            return repr(float(value))
+        raise TypeError
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"parameter {name}: found {shown(repr(value))}, expected a number or an expression") from None

@@ -1,23 +1,26 @@
 """Nodes of the tree to values: texts, numbers, lists, mappings with known keys.
 
 Each function takes a node and gives the value that belongs there, or raises a DescriptionError that
-names file, line and column, what was found and what was expected.
+names file, line and column, what was found and what was expected. Where several things can be wrong at once
+(keys, items) each is added to the `Faults`, and a ConsequenceError is raised if no value is left.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping as MappingType
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robokin.description.expressions import Scope, evaluate, names_parameters
+from robokin.description.faults import Faults
 from robokin.description.schema import Fields
-from robokin.description.transforms import evaluate_transform, position_texts
+from robokin.description.transforms import Reader, position_texts
 from robokin.description.tree import Mapping, Mark, Node, Scalar, Sequence, describe
-from robokin.errors import DescriptionError, ExpressionError, did_you_mean, or_list, shown
+from robokin.errors import DescriptionError, ExpressionError, did_you_mean, nearest, or_list, shown
 from robokin.spatial.rotations import ZERO_AXIS
 from robokin.units import Units
 
@@ -25,8 +28,11 @@ Array = NDArray[np.float64]
 
 INFINITE = re.compile(r"[-+]?\.?(inf|infinity|nan)", re.IGNORECASE)
 
+LONGEST = 1e6
+"""Greatest length [m]: a thousand kilometres. No arm is near it, and beside it a millimetre still has ten digits."""
+
 GREATEST = 1e90
-"""Greatest length [m] or angle [rad]: no machine is near it, and the cube of a sum of them is still a number."""
+"""Greatest angle [rad]: sums and products of them are still numbers."""
 
 NO_WORD = re.compile(r"[\x00-\x1f\x7f-\x9f\ud800-\udfff]")
 """Characters that a quoted text can smuggle in by an escape and that no name or line of text has."""
@@ -34,28 +40,63 @@ NO_WORD = re.compile(r"[\x00-\x1f\x7f-\x9f\ud800-\udfff]")
 
 @dataclass(frozen=True)
 class Context:
-    """The units of a file and what its expressions may refer to."""
+    """The units of a file and what its expressions may refer to; its mistakes and its numbers so far."""
 
     units: Units
     scope: Scope
+    faults: Faults
+    numbers: list[Number] = field(default_factory=list)
+    parameters: MappingType[str, str] = field(default_factory=dict)
 
     def factor(self, angle: bool) -> float:
         """SI in one unit of an angle or a length."""
         return self.units.radians if angle else self.units.metres
 
+    def record(self, node: Node, what: str, text: str, value: float, *, angle: bool) -> None:
+        """Keep a length or an angle, as it is written, in the units of the file. Raises DescriptionError if it is
+        beyond what a machine measures."""
+        if abs(value) * self.factor(angle) > (GREATEST if angle else LONGEST):
+            found = describe(node) if isinstance(node, Scalar) else f"'{shown(text)}'"
+            expected = f"an angle below {GREATEST:g} rad" if angle else f"a length below {LONGEST:g} m"
+            raise node.mark.error(f"found {found} as {what}, expected {expected}")
+        self.numbers.append(Number(node.mark, what, self.parameters.get(text.strip("+-() "), text), value, angle))
 
-def fields_of(node: Node, fields: Fields, what: str) -> dict[str, Node]:
-    """The entries of a mapping, all keys known and none missing; `what` names the mapping."""
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A length or an angle as it is written, in the units of the file; what: such as `alpha of row 2`."""
+
+    mark: Mark
+    what: str
+    text: str
+    value: float
+    angle: bool
+
+
+def fields_of(node: Node, fields: Fields, what: str, faults: Faults) -> dict[str, Node]:
+    """The entries of a mapping whose keys are known; `what` names the mapping.
+
+    Unknown and missing keys are gathered; in place of a missing entry stands one whose reading is a ConsequenceError.
+    """
     if not isinstance(node, Mapping):
         raise node.mark.error(f"found {describe(node)}, expected {what}: a mapping of keys to values")
+    entries = {name: value for name, value in node.entries.items() if name in fields}
+    meant: set[str] = set()
     for name, mark in node.keys.items():
         if name not in fields:
+            close = [near for near in nearest(name, fields) if near not in entries]
+            meant.update(close)
             hint = did_you_mean(name, fields) or f", expected one of {', '.join(fields)}"
-            raise mark.error(f"found the unknown key '{shown(name)}' in {what}{hint}")
-    for name, field in fields.items():
-        if field.required and name not in node.entries:
-            raise node.mark.error(f"found no '{name}' in {what}, expected {name}: {field.doc}")
-    return node.entries
+            value = node.entries[name]
+            if name.isdecimal() and isinstance(value, Scalar) and value.empty:  # what is left of 149,09
+                hint = ", expected a point before decimals: a comma ends a value"
+            faults.add(mark.error(f"found the unknown key '{shown(name)}' in {what}{hint}"))
+    for name, field_ in fields.items():
+        if field_.required and name not in entries:
+            if name not in meant:
+                faults.add(node.mark.error(f"found no '{name}' in {what}, expected {name}: {field_.doc}"))
+            entries[name] = Scalar("", node.mark.silent())
+    return entries
 
 
 def text_of(node: Node, what: str) -> str:
@@ -97,15 +138,17 @@ def raw_number_of(node: Node, scope: Scope, what: str, *, angle: bool = False) -
 
 def number_of(node: Node, context: Context, what: str, *, angle: bool) -> float:
     """A length [m] or an angle [rad]."""
-    number = raw_number_of(node, context.scope, what, angle=angle) * context.factor(angle)
-    _check_size(abs(number), node, what)
-    return number
+    number = raw_number_of(node, context.scope, what, angle=angle)
+    context.record(node, what, expression_text(node, what), number, angle=angle)
+    return number * context.factor(angle)
 
 
-def _check_size(size: float, node: Node, what: str) -> None:
-    """Refuse what later sums and products could not hold; size [m | rad]."""
-    if size > GREATEST:
-        raise node.mark.error(f"found {describe(node)} as {what}, expected a size of a machine, below {GREATEST:g}")
+def whole_number_of(node: Node, context: Context, what: str) -> int:
+    """A whole number."""
+    number = raw_number_of(node, context.scope, what)
+    if number != int(number):
+        raise node.mark.error(f"found {number:g} as {what}, expected a whole number")
+    return int(number)
 
 
 def rounding_of(node: Node, context: Context, what: str) -> float:
@@ -139,12 +182,12 @@ def list_of(node: Node, what: str, length: int | tuple[int, int] | None = None) 
 def vector_of(node: Node, context: Context, what: str, *, direction: bool, plane: bool = False) -> Array:
     """A point (3,) [m] or a unit direction (3,); in the plane two numbers are taken as x and y."""
     items = list_of(node, what, (2, 3) if plane else 3)
-    numbers = [raw_number_of(item, context.scope, what) for item in items]
+    if not direction:
+        lengths = context.faults.each(lambda item: number_of(item, context, what, angle=False), items)
+        return np.array([*lengths, 0.0][:3])
+    numbers = context.faults.each(lambda item: raw_number_of(item, context.scope, what), items)
     vector = np.array([*numbers, 0.0][:3])
     greatest = float(np.max(np.abs(vector)))
-    if not direction:
-        _check_size(greatest, node, what)
-        return vector * context.units.metres
     if greatest < ZERO_AXIS:
         raise node.mark.error(f"found zero as {what}, expected a direction")
     vector /= greatest  # the squares of great numbers would not be finite
@@ -159,10 +202,12 @@ def transform_of(node: Node, context: Context, what: str) -> Array:
             f"found {describe(node)}, expected {what}: a transform expression such as Trans(0, 0, 1) Rot(z, 90)"
         )
     try:
-        T = evaluate_transform("" if node.empty else node.text, context.scope, context.units)
+        reader = Reader("" if node.empty else node.text, context.scope, context.units)
+        T = reader.whole()
     except ExpressionError as error:
         raise _located(node.mark, what, error) from None
-    _check_size(float(np.max(np.abs(T))), node, what)
+    for text, value, angle in reader.measures:
+        context.record(node, what, text, value, angle=angle)
     return T
 
 
@@ -197,4 +242,5 @@ def flag_of(node: Node, what: str) -> bool:
 
 
 def _located(mark: Mark, what: str, error: ExpressionError) -> DescriptionError:
-    return mark.error(f"{what}: {error}")
+    # What a parameter lacks has been said where it stands.
+    return (mark.silent() if error.parameter else mark).error(f"{what}: {error}")

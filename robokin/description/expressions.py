@@ -191,7 +191,7 @@ class Parser:
             quotient = token.text == "/"
             number = value.number / right.number if quotient else value.number * right.number
             rounding = value.rounding * abs(right.number) + right.rounding * abs(value.number)
-            rounding = rounding / right.number**2 if quotient else rounding
+            rounding = rounding / abs(right.number) / abs(right.number) if quotient else rounding
             value = self.finite(number, value, right, rounding=rounding)
         return value
 

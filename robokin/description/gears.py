@@ -40,13 +40,9 @@ def gearing_of(
         return _by_ratio(cells, kind, where, context), False
     nodes = list_of(cells[key], f"{key} {where}", len(links))
     if key == "radii":
-        radii = [number_of(node, context, f"radii {where}", angle=False) for node in nodes]
-        for node, radius in zip(nodes, radii, strict=True):
-            if not abs(radius) > 0.0:
-                raise node.mark.error(f"found 0 as a radius {where}, expected more: a pulley's radius")
-        numbers = radii
+        numbers = context.faults.each(lambda node: _pulley(node, where, context), nodes)
     else:
-        numbers = [_teeth(node, where, context) for node in nodes]
+        numbers = context.faults.each(lambda node: _teeth(node, where, context), nodes)
     if kind == "belt" and _crossed(cells, where):
         numbers[1] = -numbers[1]
     return tuple(numbers), kind == "gear"
@@ -68,6 +64,13 @@ def _by_ratio(cells: MappingType[str, Node], kind: str, where: str, context: Con
 
 def _crossed(cells: MappingType[str, Node], where: str) -> bool:
     return "crossed" in cells and flag_of(cells["crossed"], f"crossed {where}")
+
+
+def _pulley(node: Node, where: str, context: Context) -> float:
+    radius = number_of(node, context, f"radii {where}", angle=False)
+    if not abs(radius) > 0.0:
+        raise node.mark.error(f"found 0 as a radius {where}, expected more: a pulley's radius")
+    return radius
 
 
 def _teeth(node: Node, where: str, context: Context) -> float:

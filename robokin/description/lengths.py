@@ -37,34 +37,41 @@ class LinkShape:
 
 
 def links_of(node: Node, context: Context, plane: bool) -> tuple[tuple[str, ...], dict[str, LinkShape]]:
-    """The links' names, and the shapes of those that are mappings or plain names."""
+    """The links' names, none where one of them cannot be read, and the shapes of all."""
     shapes: dict[str, LinkShape] = {}
+    known = True
     for item in list_of(node, "the links"):
-        if isinstance(item, Mapping):
-            cells = fields_of(item, LINK, "a link")
-            name = text_of(cells["name"], "a link's name")
-            shape = _shape(cells, name, item.mark, context)
-            if not plane and shape.stated:
-                raise item.mark.error(
-                    f"found the shape of link {shown(name)} in a mechanism that is not planar, expected `at` and "
-                    "`axis` on its joints"
-                )
+        name = context.faults.attempt("", _link_name, item, context)
+        if not name:  # it may be the one that a joint names
+            known = False
+        elif name in shapes:
+            known = False
+            context.faults.add(item.mark.error(f"found '{shown(name)}' twice in the links, expected each name once"))
         else:
-            name, shape = text_of(item, "a name"), LinkShape(item.mark)
-        if name in shapes:
-            raise item.mark.error(f"found '{shown(name)}' twice in the links, expected each name once")
-        shapes[name] = shape
-    return tuple(shapes), shapes
+            shapes[name] = context.faults.attempt(LinkShape(item.mark), _shape, item, name, context)
+    shaped = [name for name, shape in shapes.items() if shape.stated]
+    if shaped and not plane:
+        raise shapes[shaped[0]].mark.error(
+            f"found the shape of link {shown(shaped[0])} in a mechanism that is not planar, expected `at` and "
+            "`axis` on its joints"
+        )
+    return tuple(shapes) if known else (), shapes
 
 
-def _shape(cells: MappingType[str, Node], name: str, mark: Mark, context: Context) -> LinkShape:
-    shape = LinkShape(mark, stated=len(cells) > 1)
+def _link_name(item: Node, context: Context) -> str:
+    if isinstance(item, Mapping):
+        return text_of(fields_of(item, LINK, "a link", context.faults)["name"], "a link's name")
+    return text_of(item, "a name")
+
+
+def _shape(item: Node, name: str, context: Context) -> LinkShape:
+    """What a link says of its shape; a plain name says nothing."""
+    if not isinstance(item, Mapping):
+        return LinkShape(item.mark)
+    cells = fields_of(item, LINK, "a link", context.faults)
+    shape = LinkShape(item.mark, stated=len(cells) > 1)
     if "length" in cells:
-        shape.length = number_of(cells["length"], context, f"length of link {shown(name)}", angle=False)
-        if not shape.length > 0.0:
-            raise cells["length"].mark.error(
-                f"found {shape.length / context.units.metres:g} as length of link {shown(name)}, expected more than 0"
-            )
+        shape.length = context.faults.attempt(1.0, _length, cells["length"], name, context)
         if "places" in cells:
             raise cells["places"].mark.error(f"found 'length' and 'places' of link {shown(name)}, expected one of them")
     for key in ("places", "directions"):
@@ -78,12 +85,23 @@ def _shape(cells: MappingType[str, Node], name: str, mark: Mark, context: Contex
         for joint, value in entries.entries.items():
             what = f"{key} of link {shown(name)}, {shown(joint)}"
             if key == "places":
-                x, y, _ = vector_of(value, context, what, direction=False, plane=True)
+                x, y, _ = context.faults.attempt(
+                    np.zeros(3), vector_of, value, context, what, direction=False, plane=True
+                )
                 shape.places[joint] = complex(x, y)
             else:
-                shape.directions[joint] = number_of(value, context, what, angle=True)
+                shape.directions[joint] = context.faults.attempt(0.0, number_of, value, context, what, angle=True)
             shape.marks[joint] = entries.keys[joint]
     return shape
+
+
+def _length(node: Node, name: str, context: Context) -> float:
+    length = number_of(node, context, f"length of link {shown(name)}", angle=False)
+    if not length > 0.0:
+        raise node.mark.error(
+            f"found {length / context.units.metres:g} as length of link {shown(name)}, expected more than 0"
+        )
+    return length
 
 
 def value_of(node: Node, kind: str, where: str, context: Context) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping as MappingType
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +22,11 @@ from robokin.description.cells import (
     roundings_of,
     text_of,
     vector_of,
+    whole_number_of,
 )
 from robokin.description.gears import GEARED, gearing_of
 from robokin.description.lengths import LinkShape, assembled_joints, links_of, mode_of, placed, value_of
+from robokin.description.plausibility import notes_on
 from robokin.description.read import Head
 from robokin.description.schema import EXPECTED, FREEDOMS, MAX_ROWS, MECHANISM_JOINT, ONE_CONSTRAINT, SPACES
 from robokin.description.tree import Node
@@ -46,77 +49,107 @@ OTHER_NAMES = {"chain": "belt with teeth", "bevel": "gear", "worm": "gear", "pin
 """What other books call a type of joint."""
 
 
-def read_mechanism(fields: MappingType[str, Node], head: Head, mode: int | None = None) -> Mechanism:
-    """The mechanism with these fields; `mode`: which way to put it together, if its links have lengths.
+def read_mechanism(head: Head, mode: int | None = None) -> Mechanism:
+    """The mechanism with the fields of `head`; `mode`: which way to put it together, if its links have lengths.
 
     Raises DescriptionError, and InputError for a mode that there is not.
     """
-    space = choice_of(fields["space"], SPACES, "the space")
-    links, shapes = links_of(fields["links"], head.context, space == "planar")
-    if len(links) < 2:
-        raise fields["links"].mark.error(f"found {_links(len(links))}, expected at least two: the ground is one")
-    if len(links) > MAX_ROWS:
-        raise fields["links"].mark.error(f"found {len(links)} links, expected at most {MAX_ROWS}")
-    ground = links[0]
+    fields, context = head.fields, head.context
+    attempt = context.faults.attempt
+    space = attempt(None, choice_of, fields["space"], SPACES, "the space")
+    links, shapes = attempt(((), {}), _links_of, fields["links"], context, space)
+    ground = links[0] if links else ""
     if "ground" in fields:
-        ground = _link(fields["ground"], links, "the ground")
-    joints: list[MechanismJoint] = []
-    names: dict[str, int] = {}
-    nodes = list_of(fields["joints"], "the joints")
-    if not nodes:
-        raise fields["joints"].mark.error("found no joints, expected at least one")
-    if len(nodes) > MAX_ROWS:
-        raise fields["joints"].mark.error(f"found {len(nodes)} joints, expected at most {MAX_ROWS}")
-    for i, node in enumerate(nodes, start=1):
-        joint = _joint(fields_of(node, MECHANISM_JOINT, f"joint {i}"), i, space, links, head.context)
-        if joint.name in names:
-            raise node.mark.error(
-                f"found the name '{shown(joint.name)}' of joint {i} on joint {names[joint.name]} too, "
-                "expected another name"
-            )
-        names[joint.name] = i
-        joints.append(joint)
-    modes, mode, whole = _assembled(fields, joints, shapes, ground, space, mode, head)
-    output = _link(fields["output"], links, "the output") if "output" in fields else ""
-    if output == ground:
-        raise fields["output"].mark.error(
-            f"found the ground '{shown(output)}' as the output, expected a link that moves"
-        )
-    return Mechanism(
+        ground = attempt(ground, _link, fields["ground"], links, "the ground")
+    joints, cells = attempt(([], []), _joints, fields["joints"], space, links, context)
+    output = attempt("", _output, fields["output"], links, ground) if "output" in fields else ""
+    expected = attempt({}, _expected, fields["expected"], context) if "expected" in fields else {}
+    context.faults.stop()
+    assert space is not None  # else there was a mistake
+    # How links fit together is asked only of links and joints that are right.
+    modes, mode, whole = _assembled(fields, joints, cells, shapes, ground, space, mode, head)
+    mechanism = Mechanism(
         name=head.name,
         space=space,  # type: ignore[arg-type]  # choice_of has made sure
         links=links,
         joints=tuple(joints),
         ground=ground,
         output=output,
-        expected=_expected(fields["expected"], head.context) if "expected" in fields else {},
+        expected=expected,
         id=head.id,
         description=head.description,
         source=head.source,
-        units=head.context.units,
+        units=context.units,
         parameters=head.parameters,
         ground_named="ground" in fields,
         modes=modes,
         mode=mode,
         modes_complete=whole,
     )
+    return replace(mechanism, notes=notes_on(context, mechanism))
+
+
+def _links_of(node: Node, context: Context, space: str | None) -> tuple[tuple[str, ...], dict[str, LinkShape]]:
+    links, shapes = links_of(node, context, space in ("planar", None))
+    count = len(list_of(node, "the links"))
+    if count < 2:
+        raise node.mark.error(f"found {_links(count)}, expected at least two: the ground is one")
+    if len(links) > MAX_ROWS:
+        raise node.mark.error(f"found {len(links)} links, expected at most {MAX_ROWS}")
+    return links, shapes
+
+
+def _joints(
+    node: Node, space: str | None, links: tuple[str, ...], context: Context
+) -> tuple[list[MechanismJoint], list[dict[str, Node]]]:
+    """The joints and their entries; space: None where it is not known."""
+    nodes = list_of(node, "the joints")
+    if not nodes:
+        raise node.mark.error("found no joints, expected at least one")
+    if len(nodes) > MAX_ROWS:
+        raise node.mark.error(f"found {len(nodes)} joints, expected at most {MAX_ROWS}")
+    joints: list[MechanismJoint] = []
+    entries: list[dict[str, Node]] = []
+    names: dict[str, int] = {}
+    for i, item in enumerate(nodes, start=1):
+        cells = context.faults.attempt(None, fields_of, item, MECHANISM_JOINT, f"joint {i}", context.faults)
+        if cells is None:
+            continue
+        name = str(i)
+        if "name" in cells:
+            name = context.faults.attempt(name, text_of, cells["name"], f"the name of joint {i}")
+        if name in names:
+            context.faults.add(
+                item.mark.error(
+                    f"found the name '{shown(name)}' of joint {i} on joint {names[name]} too, expected another name"
+                )
+            )
+        names.setdefault(name, i)
+        joint = context.faults.attempt(None, _joint, cells, name, space, links, context)
+        if joint is not None:
+            joints.append(joint)
+            entries.append(cells)
+    return joints, entries
+
+
+def _output(node: Node, links: tuple[str, ...], ground: str) -> str:
+    output = _link(node, links, "the output")
+    if output == ground:
+        raise node.mark.error(f"found the ground '{shown(output)}' as the output, expected a link that moves")
+    return output
 
 
 def _assembled(
-    fields: MappingType[str, Node], joints: list[MechanismJoint], shapes: dict[str, LinkShape], ground: str, space: str,
-    mode: int | None, head: Head,
+    fields: MappingType[str, Node], joints: list[MechanismJoint], cells: list[dict[str, Node]],
+    shapes: dict[str, LinkShape], ground: str, space: str, mode: int | None, head: Head,
 ) -> tuple[tuple[AssemblyMode, ...], int, bool]:  # fmt: skip
     """Put joints in the places that lengths say; the ways there are, the number of the one, whether those are all."""
-    cells = [fields_of(node, MECHANISM_JOINT, "a joint") for node in list_of(fields["joints"], "the joints")]
     values: dict[str, float] = {}
     for joint, given in zip(joints, cells, strict=True):
-        if "value" not in given:
-            continue
-        if joint.type not in ("revolute", "prismatic") or space != "planar":
-            raise given["value"].mark.error(
-                f"found 'value' of joint {shown(joint.name)}, expected it on hinges and slides of planar mechanisms"
-            )
-        values[joint.name] = value_of(given["value"], joint.type, f"of joint {shown(joint.name)}", head.context)
+        if "value" in given:
+            value = head.context.faults.attempt(None, _value, given["value"], joint, space, head.context)
+            values[joint.name] = 0.0 if value is None else value
+    head.context.faults.stop()
     if not values and not any(shape.stated for shape in shapes.values()):
         if mode is not None:
             raise InputError(f"--mode: {head.name} has the places of its joints, expected a mechanism by lengths")
@@ -130,53 +163,83 @@ def _assembled(
     return ways.modes, mode, ways.complete
 
 
+def _value(node: Node, joint: MechanismJoint, space: str, context: Context) -> float:
+    if joint.type not in ("revolute", "prismatic") or space != "planar":
+        raise node.mark.error(
+            f"found 'value' of joint {shown(joint.name)}, expected it on hinges and slides of planar mechanisms"
+        )
+    return value_of(node, joint.type, f"of joint {shown(joint.name)}", context)
+
+
 def _expected(node: Node, context: Context) -> dict[str, int]:
     """What the source says of the mechanism's freedoms."""
-    numbers = {}
-    for key, cell in fields_of(node, EXPECTED, "what is expected").items():
-        number = raw_number_of(cell, context.scope, f"expected {key}")
-        if number != int(number):
-            raise cell.mark.error(f"found {number:g} as expected {key}, expected a whole number")
-        numbers[key] = int(number)
-    return numbers
+    cells = fields_of(node, EXPECTED, "what is expected", context.faults)
+    return {
+        key: context.faults.attempt(0, whole_number_of, cell, context, f"expected {key}") for key, cell in cells.items()
+    }
 
 
 def _joint(
-    cells: MappingType[str, Node], i: int, space: str, links: tuple[str, ...], context: Context
-) -> MechanismJoint:
-    name = text_of(cells["name"], f"the name of joint {i}") if "name" in cells else str(i)
+    cells: MappingType[str, Node], name: str, stated: str | None, links: tuple[str, ...], context: Context
+) -> MechanismJoint | None:
+    """A joint; None, and the mistakes gathered, where it is wrong. stated: the space, None where it is not known."""
+    attempt = context.faults.attempt
+    before = context.faults.count
     where = f"of joint {shown(name)}"
-    kind = _type(cells["type"], where)
-    joined = tuple(_link(item, links, f"a link {where}") for item in list_of(cells["links"], f"the links {where}"))
-    if len(joined) < 2:
-        raise cells["links"].mark.error(f"found {_links(len(joined))} {where}, expected at least two")
-    if len(set(joined)) < len(joined):
-        raise cells["links"].mark.error(f"found a link twice in the links {where}, expected different links")
+    space = stated or "planar"  # where a point may have two numbers or three
+    kind = attempt(None, _type, cells["type"], where)
+    joined = attempt((), _joined, cells["links"], links, where, context)
     if kind == "rolling" and space != "planar":
-        raise cells["type"].mark.error(
-            f"found '{kind}' {where} in a {space} mechanism, expected it in a planar one: use type custom with freedoms"
+        context.faults.add(
+            cells["type"].mark.error(
+                f"found '{kind}' {where} in a {space} mechanism, expected it in a planar one: "
+                "use type custom with freedoms"
+            )
         )
     for key, owners in OWN_KEYS.items():
-        if key in cells and kind not in owners:
-            raise cells[key].mark.error(
-                f"found '{key}' {where}, a {kind} joint, expected it only on type {or_list(owners)}"
+        if kind is not None and key in cells and kind not in owners:
+            context.faults.add(
+                cells[key].mark.error(
+                    f"found '{key}' {where}, a {kind} joint, expected it only on type {or_list(owners)}"
+                )
             )
+    at = attempt(None, _at, cells["at"], space, where, context) if "at" in cells else None
+    pitch = attempt(0.0, _pitch, cells, where, context)
+    actuated = attempt(False, flag_of, cells["actuated"], f"actuated {where}") if "actuated" in cells else False
+    carrier = attempt("", _link, cells["carrier"], links, f"the carrier {where}") if "carrier" in cells else ""
+    axes: Array | None = None
+    freedoms = 0
+    if kind is not None and stated is not None:
+        axes = attempt(None, _axes, cells, kind, space, where, context)
+        freedoms = attempt(0, _freedoms, cells, kind, LAMBDA[space], where, context)
+    if kind is None or stated is None or context.faults.count > before or not joined:
+        return None
     gearing, meshes = gearing_of(cells, kind, space, joined, where, context)
-    axes = _axes(cells, kind, space, where, context)
     return MechanismJoint(
         name=name,
         type=kind,
         links=joined,
-        freedoms=_freedoms(cells, kind, LAMBDA[space], where, context),
-        at=_at(cells["at"], space, where, context) if "at" in cells else None,
+        freedoms=freedoms,
+        at=at,
         axes=axes,
-        pitch=_pitch(cells, where, context),
-        actuated=flag_of(cells["actuated"], f"actuated {where}") if "actuated" in cells else False,
+        pitch=pitch,
+        actuated=actuated,
         gearing=gearing,
         meshes=meshes,
-        carrier=_link(cells["carrier"], links, f"the carrier {where}") if "carrier" in cells else "",
+        carrier=carrier,
         rounding=_rounding(cells, 0 if axes is None else len(axes), where, context),
     )
+
+
+def _joined(node: Node, links: tuple[str, ...], where: str, context: Context) -> tuple[str, ...]:
+    """The links that a joint joins."""
+    items = list_of(node, f"the links {where}")
+    joined = tuple(context.faults.each(lambda item: _link(item, links, f"a link {where}"), items))
+    if len(joined) < 2:
+        raise node.mark.error(f"found {_links(len(joined))} {where}, expected at least two")
+    if len(set(joined)) < len(joined):
+        raise node.mark.error(f"found a link twice in the links {where}, expected different links")
+    return joined
 
 
 def _type(node: Node, where: str) -> str:
@@ -215,6 +278,8 @@ def _at(node: Node, space: str, where: str, context: Context) -> Array:
 
 def _link(node: Node, links: tuple[str, ...], what: str) -> str:
     name = text_of(node, what)
+    if not links:
+        raise node.mark.silent().error(f"found '{shown(name)}' as {what}, expected links that can be read")
     if name not in links:
         hint = did_you_mean(name, links) or f", expected one of {', '.join(links[:12])}"
         raise node.mark.error(f"found the unknown link '{shown(name)}' as {what}{hint}")

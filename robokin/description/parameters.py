@@ -13,12 +13,14 @@ from robokin.errors import ExpressionError
 class Parameters:
     """Named expressions that may refer to each other in any order; evaluated when asked for.
 
-    `texts` maps a name to its expression.
+    `texts` maps a name to its expression, `known` to its value, `broken` to what is wrong with it or with what it
+    needs.
     """
 
     texts: Mapping[str, str]
     degrees: bool
     known: dict[str, Value] = field(default_factory=dict)
+    broken: dict[str, ExpressionError] = field(default_factory=dict)
 
     def scope(self) -> Scope:
         """A scope in which these parameters can be named."""
@@ -32,8 +34,21 @@ class Parameters:
         """
         if name in self.known:
             return self.known[name]
+        if name in self.broken:
+            raise self.broken[name]
+        path: dict[str, Iterator[str]] = {}
+        try:
+            return self._evaluated(name, path)
+        except ExpressionError as error:
+            # Whoever needs one of these meets the same mistake again.
+            self.broken.update(dict.fromkeys(path, error))
+            raise
+
+    def _evaluated(self, name: str, path: dict[str, Iterator[str]]) -> Value:
+        """The value; `path` holds the parameters that wait for one another."""
         scope = self.scope()
-        path: dict[str, Iterator[str]] = {name: self._named(name)}
+        path[name] = iter(())
+        path[name] = self._named(name)
         while path:
             last = next(reversed(path))
             needed = next((other for other in path[last] if other not in self.known), None)
@@ -41,12 +56,15 @@ class Parameters:
                 try:
                     self.known[last] = evaluate(self.texts[last], scope)
                 except ExpressionError as error:
-                    error.parameter = last
+                    error.parameter = error.parameter or last
                     raise
                 del path[last]
+            elif needed in self.broken:
+                raise self.broken[needed]
             elif needed in path:
                 raise _circle([*path][[*path].index(needed) :])
             else:
+                path[needed] = iter(())
                 path[needed] = self._named(needed)
         return self.known[name]
 

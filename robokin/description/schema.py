@@ -58,12 +58,13 @@ ROW: Fields = {
     "type": Field("text", "revolute (R), prismatic (P) or fixed (F)", required=True, choices=ROW_TYPES),
     "limits": Field("limits", "[min, max] of q; absent: unlimited"),
     "offset": Field("number", "constant shift of the variable: theta = q + offset, or d = q + offset"),
+    "sense": Field("sense", "-1: the variable enters with the other sign, theta = offset - q; default 1"),
 }
 
 DH_ROW: Fields = {
     **ROW,
-    "theta": Field("number", "angle about z; not on a revolute row"),
-    "d": Field("number", "length along z; not on a prismatic row"),
+    "theta": Field("number", "angle about z; on a revolute row only its variable: q1, q1 + 90, 90 - q1"),
+    "d": Field("number", "length along z; on a prismatic row only its variable"),
     "a": Field("number", "length along x"),
     "alpha": Field("number", "angle about x"),
 }
@@ -177,6 +178,7 @@ def json_schema() -> dict[str, Any]:
         "version": {"const": VERSION},
         "text": text,
         "flag": {"type": "boolean"},
+        "sense": {"enum": [1, -1]},
         "number": number,
         "transform": {"type": ["string", "null"], "description": "such as Trans(0, 0, 660) Rot(z, 90)"},
         "units": _object(UNITS),

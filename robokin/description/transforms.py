@@ -17,15 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.description.expressions import MAX_NESTING, Parser, Scope, names_parameters
+from robokin.description.matrices import ROUNDING, pose_from_matrix
 from robokin.errors import ExpressionError, did_you_mean, shown
 from robokin.kinematics.dh import modified_dh, standard_dh
 from robokin.spatial import (
     invert,
-    nearest_rotation,
-    rotation_error,
     rotation_from_euler,
     rotation_from_quaternion,
+    rotation_from_rotation_vector,
     rotation_from_rpy,
+    rotation_from_sequence,
     rotation_transform,
     transform,
     translation_transform,
@@ -39,8 +40,13 @@ STEPS = {
     "trans": "Trans(x, y, z)",
     "rot": "Rot(x|y|z, angle) or Rot([x, y, z], angle)",
     "rpy": "RPY(roll, pitch, yaw)",
-    "euler": "Euler(phi, theta, psi)",
+    "euler": "Euler(phi, theta, psi) or Euler(xyz, a, b, c)",
+    "oat": "OAT(o, a, t)",
+    "abc": "ABC(a, b, c)",
+    "wpr": "WPR(w, p, r)",
+    "rotvec": "RotVec(x, y, z)",
     "quat": "Quat(w, x, y, z)",
+    "quatxyzw": "QuatXYZW(x, y, z, w)",
     "dh": "DH(theta, d, a, alpha)",
     "mdh": "MDH(alpha, a, theta, d)",
     "inv": "Inv(…)",
@@ -48,11 +54,11 @@ STEPS = {
 }
 """The steps by their name in lower case, with how they are written."""
 
+SEQUENCES = tuple(a + b + c for a in "xyz" for b in "xyz" for c in "xyz" if a != b and b != c)
+"""The twelve orders of axes of Euler angles; in upper case about fixed axes."""
+
 PRIMES = "'′’"
 """What may follow the letter of an axis, as often as a lecture writes it: Rot(z'', 90)."""
-
-ROUNDING = 1e-12
-"""A matrix this near to a rotation is taken as it stands."""
 
 Kind = Literal["length", "angle", "ratio"]
 
@@ -62,7 +68,8 @@ class Reader:
     """Reads one transform expression; `notes` collects what the user should know of it.
 
     `shifts` are its translations: a direction (3,) in the first frame and the text of how far, or "" where
-    the direction itself is the translation [m].
+    the direction itself is the translation [m]. `measures` are its lengths and angles: text, value in the units at
+    hand, whether it is an angle.
     """
 
     text: str
@@ -74,6 +81,7 @@ class Reader:
         self.parser = Parser(self.text, self.scope)
         self.shifts: list[tuple[Array, str]] = []
         self.arguments: list[str] = []
+        self.measures: list[tuple[str, float, bool]] = []
 
     def whole(self) -> Array:
         """The transform (4, 4) of the whole text [m]."""
@@ -147,10 +155,12 @@ class Reader:
         return values
 
     def _number(self, kind: Kind) -> float:
-        if kind == "angle":
-            return self.parser.angle() * self.units.radians
-        value = self.parser.number().number
-        return value * self.units.metres if kind == "length" else value
+        start = self.parser.token.position
+        value = self.parser.angle() if kind == "angle" else self.parser.number().number
+        if kind == "ratio":
+            return value
+        self.measures.append((self.text[start : self.parser.token.position].strip(), value, kind == "angle"))
+        return value * (self.units.radians if kind == "angle" else self.units.metres)
 
     def _trans(self) -> Array:
         return translation_transform(self._numbers("trans", "length", "length", "length"))
@@ -178,21 +188,53 @@ class Reader:
             raise parser.error("found zero as the axis, expected a direction", start)
         return [part / greatest for part in axis]  # the squares of great numbers would not be finite
 
+    def _turned(self, R: Array) -> Array:
+        return transform(R, np.zeros(3))
+
+    def _angles(self, form: str) -> list[float]:
+        return self._numbers(form, "angle", "angle", "angle")
+
     def _rpy(self) -> Array:
-        return transform(rotation_from_rpy(self._numbers("rpy", "angle", "angle", "angle")), np.zeros(3))
+        return self._turned(rotation_from_rpy(self._angles("rpy")))
+
+    def _wpr(self) -> Array:
+        return self._turned(rotation_from_rpy(self._angles("wpr")))
+
+    def _abc(self) -> Array:
+        return self._turned(rotation_from_rpy(self._angles("abc")[::-1]))
+
+    def _oat(self) -> Array:
+        return self._turned(rotation_from_euler(self._angles("oat")))
+
+    def _rotvec(self) -> Array:
+        return self._turned(rotation_from_rotation_vector(self._angles("rotvec")))
 
     def _euler(self) -> Array:
-        return transform(rotation_from_euler(self._numbers("euler", "angle", "angle", "angle")), np.zeros(3))
+        parser = self.parser
+        order = parser.token.text
+        if order.lower() not in SEQUENCES or order in self.scope.names:
+            return self._turned(rotation_from_euler(self._angles("euler")))
+        if not (order.islower() or order.isupper()):
+            raise parser.error(
+                f"found the axes '{order}', expected lower case (about moving axes) or upper case (about fixed axes)"
+            )
+        parser.index += 1
+        if not parser.accept(","):
+            raise parser.error(f"found {parser.found()} after the axes, expected {STEPS['euler']}")
+        return self._turned(rotation_from_sequence(order, self._angles("euler")))
 
-    def _quat(self) -> Array:
+    def _quat(self, form: str = "quat") -> Array:
         token = self.parser.token
-        q = self._numbers("quat", "ratio", "ratio", "ratio", "ratio")
+        q = self._numbers(form, "ratio", "ratio", "ratio", "ratio")
         length = math.hypot(*q)
         if abs(length - 1.0) > DIGITS_LOST:
             raise self.parser.error(f"found a quaternion of length {length:.6g}, expected 1", token)
         if abs(length - 1.0) > ROUNDING:
             self.notes.append(f"the quaternion's length is {length:.9g}; it is taken as 1")
-        return transform(rotation_from_quaternion(q), np.zeros(3))
+        return self._turned(rotation_from_quaternion(q if form == "quat" else [q[3], *q[:3]]))
+
+    def _quatxyzw(self) -> Array:
+        return self._quat("quatxyzw")
 
     def _dh(self) -> Array:
         theta, d, a, alpha = self._numbers("dh", "angle", "length", "length", "angle")
@@ -224,43 +266,8 @@ class Reader:
             raise parser.error(str(error), start) from None
         if note:
             self.notes.append(note)
+        self.measures += [("", row[3], False) for row in rows[:3]]
         return T
-
-
-def pose_from_matrix(rows: object, units: Units) -> tuple[Array, str]:
-    """A pose (4, 4) [m] from a homogeneous matrix in the given length unit, and a note or "".
-
-    Three rows of four are taken too (the last one is 0 0 0 1). A rotation whose digits were cut is made
-    a rotation and a note says by how much it was off. Raises ValueError when it is no pose, saying how far off.
-    """
-    try:
-        M = np.array(rows, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError("found rows that are not numbers of one count, expected 4 rows of 4 numbers") from None
-    if M.shape == (3, 4):
-        M = np.vstack([M, [0.0, 0.0, 0.0, 1.0]])
-    if M.shape != (4, 4):
-        shape = "×".join(str(count) for count in M.shape)
-        raise ValueError(f"found a matrix of {shape}, expected 4×4")
-    if not np.all(np.isfinite(M)):
-        raise ValueError("found a number that is not finite in the matrix, expected finite numbers")
-    if np.max(np.abs(M[3] - [0.0, 0.0, 0.0, 1.0])) > ROUNDING:
-        raise ValueError(f"found the last row {' '.join(f'{v:g}' for v in M[3])}, expected 0 0 0 1")
-    R = M[:3, :3]
-    with np.errstate(all="ignore"):  # of great numbers the products overflow, and are refused
-        off = float(rotation_error(R))
-        reflects = np.linalg.det(R) < 0.0
-    if reflects:
-        raise ValueError("found a reflection in the upper left 3×3 (its determinant is negative), expected a rotation")
-    if not off <= DIGITS_LOST:
-        raise ValueError(
-            f"found no rotation in the upper left 3×3: RᵀR is off by {off:.2g}, expected at most {DIGITS_LOST:g}"
-        )
-    note = ""
-    if off > ROUNDING:
-        R = nearest_rotation(R)
-        note = f"the matrix is a rotation only to {off:.1g}; the nearest rotation is taken"
-    return transform(R, M[:3, 3] * units.metres), note
 
 
 def evaluate_transform(text: str, scope: Scope, units: Units, notes: list[str] | None = None) -> Array:

@@ -13,11 +13,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import yaml
 
+from robokin.description.excerpts import LINE_BREAK
+from robokin.description.faults import ConsequenceError, Faults
 from robokin.errors import DescriptionError, shown
 
 MAX_DEPTH = 32
@@ -32,6 +34,9 @@ CHARACTERS = 16
 NO_TEXT = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff\ufeff\ufffe\uffff]")
 """Characters that YAML refuses: controls, halves of surrogate pairs, and what is no character."""
 
+WHOLE_LINE = 1 << 20
+"""The width of what goes on to the end of its line, and beyond."""
+
 BEFORE_VALUE = ("", "-", ":", ",", "?", "[", "{")
 """What stands before a value on its line."""
 
@@ -41,15 +46,26 @@ NO_START = ("@", "`", "%", "|", ">")
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A place in a file; line and column count from 1."""
+    """A place in a file; line and column count from 1, `width` is how many characters are meant.
+
+    `said`: what is wrong here has been said, and what else is found wrong is a consequence of it.
+    """
 
     file: str
     line: int
     column: int
+    width: int = 1
+    said: bool = False
 
     def error(self, message: str) -> DescriptionError:
-        """A DescriptionError at this place."""
-        return DescriptionError(message, self.file, self.line, self.column)
+        """A DescriptionError at this place; what a message repeats of the file steers no terminal."""
+        message = message if message.isprintable() else shown(message, len(message))
+        kind = ConsequenceError if self.said else DescriptionError
+        return kind(message, self.file, self.line, self.column, self.width)
+
+    def silent(self) -> Mark:
+        """The same place, where what is wrong has been said."""
+        return replace(self, said=True)
 
 
 @dataclass(slots=True)
@@ -100,20 +116,31 @@ def describe(node: Node) -> str:
     return f"'{shown(node.text)}'"
 
 
-def read_tree(text: str, file: str) -> Node:
-    """The tree of a text with one YAML document. Raises DescriptionError with line and column."""
-    text = text.removeprefix("\ufeff")
+def read_tree(text: str, file: str, faults: Faults | None = None) -> Node:
+    """The tree of a text with one YAML document; mistakes that leave it readable are gathered in `faults`, if given.
+
+    Raises DescriptionError with line and column.
+    """
+    gathered = Faults() if faults is None else faults
+    root = _read(text.removeprefix("\ufeff"), file, gathered)
+    if faults is None:
+        gathered.stop()
+    return root
+
+
+def _read(text: str, file: str, faults: Faults) -> Node:
     if found := NO_TEXT.search(text):
-        line, column = text.count("\n", 0, found.start()) + 1, found.start() - text.rfind("\n", 0, found.start())
+        ends = [end.end() for end in LINE_BREAK.finditer(text, 0, found.start())]
+        line, column = len(ends) + 1, found.start() - (ends[-1] if ends else 0) + 1
         code = f"U+{ord(found[0]):04X}"
         raise Mark(file, line, column).error(f"found the character {code}, which is no text, expected YAML in UTF-8")
     try:
-        return _Builder(_events(text), file).document()
+        return _Builder(_events(text), file, faults).document()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         for end in (mark.index, mark.index - 1) if mark else ():
             if end > 0 and _nests_too_deep(text[:end]):
-                return _Builder(_events(text[:end]), file).document()
+                return _Builder(_events(text[:end]), file, faults).document()
         where = Mark(file, mark.line + 1, mark.column + 1) if mark else Mark(file, 1, 1)
         raise where.error(_problem(error, text)) from None
     except yaml.YAMLError as error:
@@ -170,9 +197,10 @@ def _problem(error: yaml.MarkedYAMLError, text: str) -> str:
 class _Builder:
     """Builds the tree from events, keeping count of depth and size."""
 
-    def __init__(self, events: Iterator[Any], file: str) -> None:
+    def __init__(self, events: Iterator[Any], file: str, faults: Faults) -> None:
         self.events = events
         self.file = file
+        self.faults = faults
         self.anchors: dict[str, Node] = {}
         self.depth = 0
 
@@ -182,7 +210,8 @@ class _Builder:
         for event in self.events:
             if isinstance(event, yaml.DocumentStartEvent):
                 if root is not None:
-                    raise self.mark(event).error("found a second document, expected one description a file")
+                    self.faults.add(self.mark(event).error("found a second document, expected one description a file"))
+                    break
                 root = self.node(next(self.events))
         if root is None:
             raise Mark(self.file, 1, 1).error(
@@ -191,19 +220,30 @@ class _Builder:
         return root
 
     def mark(self, event: Any) -> Mark:
-        """Where an event starts."""
-        return Mark(self.file, event.start_mark.line + 1, event.start_mark.column + 1)
+        """Where an event starts, and how much of its line is meant: all of a scalar, the start of anything else."""
+        start, end = event.start_mark, event.end_mark
+        width = 1
+        if isinstance(event, yaml.ScalarEvent | yaml.AliasEvent):
+            width = end.column - start.column if end.line == start.line else WHOLE_LINE
+        return Mark(self.file, start.line + 1, start.column + 1, max(width, 1))
 
     def node(self, event: Any) -> Node:
         """The node that starts with this event."""
         mark = self.mark(event)
         if isinstance(event, yaml.AliasEvent):
             if event.anchor not in self.anchors:
-                raise mark.error(f"found the alias *{event.anchor}, expected an anchor &{event.anchor} before it")
+                self.faults.add(
+                    mark.error(f"found the alias *{event.anchor}, expected an anchor &{event.anchor} before it")
+                )
+                return Scalar("", mark.silent())
             return self.anchors[event.anchor]
         # A plain scalar has no tag and a quoted one the tag '!' of a string; others change its meaning.
         if event.tag is not None and event.tag != "!":
-            raise mark.error(f"found the tag '{event.tag}', expected none: a description holds only text and numbers")
+            tag = shown(event.tag)
+            self.faults.add(
+                mark.error(f"found the tag '{tag}', expected none: a description holds only text and numbers")
+            )
+            mark = mark.silent()
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise mark.error(f"found more than {MAX_DEPTH} levels of nesting, expected a plain description")
@@ -236,12 +276,16 @@ class _Builder:
             if isinstance(event, yaml.SequenceEndEvent):
                 break
             item = self.node(event)
+            self.grow(found, item.size)
             if flow and cut is not None and _open(item) < 0:
-                raise _cut_off(cut)
+                self.faults.add(_cut_off(cut))
+                cut.mark = cut.mark.silent()
+                del found.items[found.items.index(cut) + 1 :]
+                cut = None
+                continue
             if flow and _open(item) > 0 and isinstance(item, Scalar):
                 cut = item
             found.items.append(item)
-            self.grow(found, item.size)
         return found
 
     def mapping(self, mark: Mark, flow: bool) -> Mapping:
@@ -255,18 +299,29 @@ class _Builder:
                 break
             key = self.node(event)
             if not isinstance(key, Scalar):
-                raise key.mark.error(f"found {describe(key)} as a key, expected a word")
+                self.faults.add(key.mark.error(f"found {describe(key)} as a key, expected a word"))
             value = self.node(next(self.events))
             self.grow(found, key.size + value.size)
+            if not isinstance(key, Scalar):
+                continue
             if flow and cut is not None and isinstance(value, Scalar) and value.empty:
-                raise _cut_off(cut)
+                self.faults.add(_cut_off(cut))
+                cut.mark = cut.mark.silent()
+                cut = None if _open(key) < 0 else cut
+                continue
             cut = value if isinstance(value, Scalar) and _open(value) > 0 else None
             merges = key.text == "<<" and not key.quoted
             first = merging if merges else found.keys.get(key.text)
             if first is not None:
-                raise key.mark.error(
-                    f"found the key '{shown(key.text)}' twice, first on line {first.line}, expected each key once"
+                self.faults.add(
+                    key.mark.error(
+                        f"found the key '{shown(key.text)}' twice, first on line {first.line}, expected each key once"
+                    )
                 )
+                # Which of the two is meant is not known: neither is judged.
+                if key.text in found.entries:
+                    found.entries[key.text] = Scalar("", key.mark.silent())
+                continue
             if merges:
                 merging = key.mark
                 merged.extend(self.merged(value))
@@ -285,7 +340,7 @@ class _Builder:
         parts = value.items if isinstance(value, Sequence) else [value]
         for part in parts:
             if not isinstance(part, Mapping):
-                raise part.mark.error(f"found {describe(part)} after '<<', expected a mapping or its alias")
+                self.faults.add(part.mark.error(f"found {describe(part)} after '<<', expected a mapping or its alias"))
         return [part for part in parts if isinstance(part, Mapping)]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping as MappingType
+from dataclasses import replace
 
 from robokin.description.cells import (
     Context,
@@ -12,10 +13,11 @@ from robokin.description.cells import (
     flag_of,
     list_of,
     number_of,
-    raw_number_of,
     text_of,
     vector_of,
+    whole_number_of,
 )
+from robokin.description.plausibility import notes_on
 from robokin.description.read import Head
 from robokin.description.schema import BASE_EXPECTED, MAX_ROWS, STEERINGS, WHEEL, WHEEL_TYPES
 from robokin.description.tree import Node
@@ -34,81 +36,128 @@ NO_ROLL = 1e-6
 """Sine of the angle between a Swedish wheel's way and its rollers' below which the wheel would drive nothing."""
 
 
-def read_wheeled(fields: MappingType[str, Node], head: Head) -> WheeledBase:
-    """The wheeled base with these fields. Raises DescriptionError."""
-    nodes = list_of(fields["wheels"], "the wheels")
-    if not nodes:
-        raise fields["wheels"].mark.error("found no wheels, expected at least one")
-    if len(nodes) > MAX_ROWS:
-        raise fields["wheels"].mark.error(f"found {len(nodes)} wheels, expected at most {MAX_ROWS}")
-    wheels: list[Wheel] = []
-    names: dict[str, int] = {}
-    for i, node in enumerate(nodes, start=1):
-        wheel = _wheel(fields_of(node, WHEEL, f"wheel {i}"), i, head.context)
-        if wheel.name in names:
-            raise node.mark.error(
-                f"found the name '{shown(wheel.name)}' of wheel {i} on wheel {names[wheel.name]} too, "
-                "expected another name"
-            )
-        names[wheel.name] = i
-        wheels.append(wheel)
+def read_wheeled(head: Head) -> WheeledBase:
+    """The wheeled base with the fields of `head`. Raises DescriptionError."""
+    fields, context = head.fields, head.context
+    attempt = context.faults.attempt
+    wheels = attempt(None, _wheels, fields["wheels"], context)
     parallel = False
     if "steering" in fields:
-        parallel = choice_of(fields["steering"], STEERINGS, "the steering") == "parallel"
-        if not any(wheel.type == "steered" for wheel in wheels):
-            raise fields["steering"].mark.error("found 'steering' without a steered wheel, expected a wheel to steer")
-    return WheeledBase(
+        parallel = attempt(False, _steering, fields["steering"], wheels)
+    expected = attempt({}, _expected, fields["expected"], context) if "expected" in fields else {}
+    context.faults.stop()
+    assert wheels is not None  # else there was a mistake
+    base = WheeledBase(
         name=head.name,
-        wheels=tuple(wheels),
+        wheels=wheels,
         parallel=parallel,
         id=head.id,
         description=head.description,
         source=head.source,
-        units=head.context.units,
+        units=context.units,
         parameters=head.parameters,
-        expected=_expected(fields["expected"], head.context) if "expected" in fields else {},
+        expected=expected,
     )
+    return replace(base, notes=notes_on(context, base))
 
 
-def _wheel(cells: MappingType[str, Node], i: int, context: Context) -> Wheel:
-    name = text_of(cells["name"], f"the name of wheel {i}") if "name" in cells else str(i)
-    where = f"of wheel {shown(name)}"
-    kind = _type(cells["type"], where)
-    for key, owners in OWN_KEYS.items():
-        if key in cells and kind not in owners:
-            raise cells[key].mark.error(
-                f"found '{key}' {where}, a {kind} wheel, expected it only on type {or_list(owners)}"
+def _wheels(node: Node, context: Context) -> tuple[Wheel, ...] | None:
+    """The wheels; None, and the mistakes gathered, where one is wrong."""
+    nodes = list_of(node, "the wheels")
+    if not nodes:
+        raise node.mark.error("found no wheels, expected at least one")
+    if len(nodes) > MAX_ROWS:
+        raise node.mark.error(f"found {len(nodes)} wheels, expected at most {MAX_ROWS}")
+    before = context.faults.count
+    wheels: list[Wheel] = []
+    names: dict[str, int] = {}
+    for i, item in enumerate(nodes, start=1):
+        wheel = context.faults.attempt(None, _wheel, item, i, context)
+        if wheel is None:
+            continue
+        if wheel.name in names:
+            context.faults.add(
+                item.mark.error(
+                    f"found the name '{shown(wheel.name)}' of wheel {i} on wheel {names[wheel.name]} too, "
+                    "expected another name"
+                )
             )
-    list_of(cells["at"], f"at {where}", 2)
-    x, y, _ = vector_of(cells["at"], context, f"at {where}", direction=False, plane=True)
+        names.setdefault(wheel.name, i)
+        wheels.append(wheel)
+    return tuple(wheels) if context.faults.count == before else None
+
+
+def _steering(node: Node, wheels: tuple[Wheel, ...] | None) -> bool:
+    parallel = choice_of(node, STEERINGS, "the steering") == "parallel"
+    if wheels is not None and not any(wheel.type == "steered" for wheel in wheels):
+        raise node.mark.error("found 'steering' without a steered wheel, expected a wheel to steer")
+    return parallel
+
+
+def _wheel(node: Node, i: int, context: Context) -> Wheel | None:
+    """A wheel; None, and the mistakes gathered, where it is wrong."""
+    attempt = context.faults.attempt
+    before = context.faults.count
+    cells = fields_of(node, WHEEL, f"wheel {i}", context.faults)
+    name = attempt(str(i), text_of, cells["name"], f"the name of wheel {i}") if "name" in cells else str(i)
+    where = f"of wheel {shown(name)}"
+    kind = attempt(None, _type, cells["type"], where)
+    for key, owners in OWN_KEYS.items():
+        if kind is not None and key in cells and kind not in owners:
+            context.faults.add(
+                cells[key].mark.error(
+                    f"found '{key}' {where}, a {kind} wheel, expected it only on type {or_list(owners)}"
+                )
+            )
+    x, y = attempt((0.0, 0.0), _place, cells["at"], where, context)
 
     def number(key: str, *, angle: bool) -> float:
-        return number_of(cells[key], context, f"{key} {where}", angle=angle) if key in cells else 0.0
+        if key not in cells:
+            return 0.0
+        return attempt(0.0, number_of, cells[key], context, f"{key} {where}", angle=angle)
 
-    radius = number("radius", angle=False)
-    if "radius" in cells and not radius > 0.0:
-        raise cells["radius"].mark.error(f"found {radius / context.units.metres:g} as radius {where}, expected more")
-    roller = number("roller", angle=True)
-    if kind == "swedish":
-        right = "90 degrees for an omni wheel, 45 for a mecanum wheel"
-        if "roller" not in cells:
-            raise cells["type"].mark.error(f"found no 'roller' {where}, a swedish wheel, expected its angle: {right}")
-        if abs(math.sin(roller)) < NO_ROLL:
-            raise cells["roller"].mark.error(
-                f"found rollers {where} that slip in the direction in which it rolls, expected an angle: {right}"
-            )
-    return Wheel(
+    def flag(key: str) -> bool:
+        return attempt(False, flag_of, cells[key], f"{key} {where}") if key in cells else False
+
+    wheel = Wheel(
         name=name,
-        type=kind,
-        x=float(x),
-        y=float(y),
+        type=kind or "",
+        x=x,
+        y=y,
         angle=number("angle", angle=True),
-        radius=radius,
+        radius=attempt(0.0, _radius, cells["radius"], where, context) if "radius" in cells else 0.0,
         offset=number("offset", angle=False),
-        roller=roller,
-        driven=flag_of(cells["driven"], f"driven {where}") if "driven" in cells else False,
-        turned=flag_of(cells["turned"], f"turned {where}") if "turned" in cells else False,
+        roller=attempt(0.0, _roller, cells, where, context) if kind == "swedish" else 0.0,
+        driven=flag("driven"),
+        turned=flag("turned"),
     )
+    return wheel if context.faults.count == before and kind is not None else None
+
+
+def _place(node: Node, where: str, context: Context) -> tuple[float, float]:
+    list_of(node, f"at {where}", 2)
+    x, y, _ = vector_of(node, context, f"at {where}", direction=False, plane=True)
+    return float(x), float(y)
+
+
+def _radius(node: Node, where: str, context: Context) -> float:
+    radius = number_of(node, context, f"radius {where}", angle=False)
+    if not radius > 0.0:
+        raise node.mark.error(f"found {radius / context.units.metres:g} as radius {where}, expected more")
+    return radius
+
+
+def _roller(cells: MappingType[str, Node], where: str, context: Context) -> float:
+    """The angle of a swedish wheel's rollers [rad]."""
+    right = "90 degrees for an omni wheel, 45 for a mecanum wheel"
+    if "roller" not in cells:
+        raise cells["type"].mark.error(f"found no 'roller' {where}, a swedish wheel, expected its angle: {right}")
+    roller = number_of(cells["roller"], context, f"roller {where}", angle=True)
+    if abs(math.sin(roller)) < NO_ROLL:
+        raise cells["roller"].mark.error(
+            f"found rollers {where} that slip in the direction in which it rolls, expected an angle: {right}"
+        )
+    return roller
 
 
 def _type(node: Node, where: str) -> str:
@@ -121,10 +170,7 @@ def _type(node: Node, where: str) -> str:
 
 def _expected(node: Node, context: Context) -> dict[str, int]:
     """What the source says of the base's freedoms."""
-    numbers = {}
-    for key, cell in fields_of(node, BASE_EXPECTED, "what is expected").items():
-        number = raw_number_of(cell, context.scope, f"expected {key}")
-        if number != int(number):
-            raise cell.mark.error(f"found {number:g} as expected {key}, expected a whole number")
-        numbers[key] = int(number)
-    return numbers
+    cells = fields_of(node, BASE_EXPECTED, "what is expected", context.faults)
+    return {
+        key: context.faults.attempt(0, whole_number_of, cell, context, f"expected {key}") for key, cell in cells.items()
+    }

@@ -2,7 +2,8 @@
 
 Every convention becomes T = C0 J1(q1) C1 J2(q2) … Jn(qn) Cn, where J is Rot(z, q + offset) or
 Trans(0, 0, q + offset) and each C is a constant rigid transform. What follows (forward kinematics,
-Jacobian, inverse kinematics) is written for this form alone.
+Jacobian, inverse kinematics) is written for this form alone. A variable that enters with the other sign turns the
+frame of its joint by half a turn about x, and back: Rot(z, offset - q) = F Rot(z, q - offset) F, and so of a slide.
 
 Each joint's frame may stand anywhere on its axis: moved along z it gives the same T. It stands where the table puts
 it, unless that is far off the arm: calibrated tables of axes that are parallel but for 1e-4 rad put frames hundreds of
@@ -18,6 +19,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Brief
 from robokin.kinematics.arm_size import axis_path
 from robokin.kinematics.dh import modified_dh, standard_dh
 from robokin.model import Joint, JointType, Robot
@@ -29,13 +31,16 @@ EXACT = 1e-15
 """An entry of a constant rotation this near to 0 or ±1 is meant to be just that: it is rounding of the
 products of right angles (a few 1e-16). Exact entries cost no arithmetic later."""
 
+HALF_TURN = np.diag([1.0, -1.0, -1.0, 1.0])
+"""F, half a turn about x; its own inverse."""
+
 FAR = 2.0
 """Frames that are farther from each other, in the arm's size and added up, than this are moved along their axes to the
 arm. In tables that are written by hand it is less than 1.5: only offsets along parallel axes may go to and fro."""
 
 
-@dataclass(frozen=True, eq=False)
-class Chain:
+@dataclass(frozen=True, eq=False, repr=False)
+class Chain(Brief):
     """C0 J1 C1 … Jn Cn.
 
     constants: (n + 1, 4, 4) [m]; revolute: (n,) bool; offsets: (n,) [rad | m]; start: (3,) where the arm begins, the
@@ -69,7 +74,7 @@ def chain_of(robot: Robot) -> Chain:
             else:
                 constants[-1] = constants[-1] @ after
         constants[-1] = constants[-1] @ robot.tool
-        offsets = np.array([joint.offset for joint in robot.joints])
+        offsets = np.array([joint.offset for joint in robot.joints]) * robot.senses + 0.0  # no negative zeros
         start = (invert(constants[0]) @ robot.base)[:3, 3]
         chain = Chain(np.stack([exact(C) for C in constants]), robot.revolute, offsets, start)
         chain = _chains[robot] = near_the_arm(chain)
@@ -103,6 +108,14 @@ def near_the_arm(chain: Chain) -> Chain:
 
 def row_constants(row: Joint, convention: str) -> tuple[Array, Array]:
     """The constant transforms (4, 4) before and after the motion of one row, the motion being along z."""
+    before, after = _constants(row, convention)
+    if row.moves and row.sense < 0:
+        return before @ HALF_TURN, HALF_TURN @ after
+    return before, after
+
+
+def _constants(row: Joint, convention: str) -> tuple[Array, Array]:
+    """The same for a variable that enters with its own sign."""
     # The variable's own cell is 0 in the row, so that one formula serves every type of row.
     if convention == "standard":
         return np.eye(4), standard_dh(row.theta, row.d, row.a, row.alpha)

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robokin.errors import InputError
+from robokin.expected import expect_numbers
 from robokin.kinematics.chain import chain_of, exact, row_constants
 from robokin.kinematics.columns import BLOCK, Constant, Plan
-from robokin.model import Robot
+from robokin.model import Robot, expect_robot
 
 Array = NDArray[np.float64]
 
@@ -62,11 +63,9 @@ def _frames(robot: Robot, q: ArrayLike, which: str) -> Array:
 
 
 def joint_values(robot: Robot, q: ArrayLike) -> Array:
-    """q as an array (..., n) of floats; InputError when it is not one."""
-    try:
-        q = np.asarray(q, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError("joint values must be numbers, in an array (..., n)") from None
+    """q as an array (..., n) of floats; InputError when it is not one, or `robot` no robot."""
+    robot = expect_robot(robot)
+    q = expect_numbers(q, "q", "joint values: numbers in an array (..., n)")
     if q.ndim == 0 or q.shape[-1] != robot.n:
         given = "a single number" if q.ndim == 0 else f"{q.shape[-1]}"
         raise InputError(

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from robokin.errors import InputError
+from robokin.expected import expect_choice
 from robokin.kinematics.forward import joint_frames
 from robokin.model import Robot
 
@@ -22,8 +22,7 @@ def jacobian(robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base"
     o gives the column (z × (p - o), z), a prismatic one (z, 0).
     Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, eq. (3.30).
     """
-    if frame not in ("base", "tool"):
-        raise InputError(f"found frame {frame!r}, expected 'base' or 'tool'")
+    expect_choice(frame, ("base", "tool"), "frame")
     F = joint_frames(robot, q)
     z, o = F[..., :-1, :3, 2], F[..., :-1, :3, 3]
     R, p = F[..., -1, :3, :3], F[..., -1, None, :3, 3]

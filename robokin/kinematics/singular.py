@@ -19,6 +19,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Brief
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.singular_equation import Equation, equation_of, exact_angle, lateral, reference_point
 from robokin.kinematics.singular_search import HOLDS, Condition, Search
@@ -33,8 +34,8 @@ TRIES = 40
 """Values tried for the joints that do not matter, until an example has lost nothing else and respects the limits."""
 
 
-@dataclass(frozen=True, eq=False)
-class Singularity:
+@dataclass(frozen=True, eq=False, repr=False)
+class Singularity(Brief):
     """A condition on some joints that makes the arm singular, whatever the other joints are.
 
     joints: in numbers from 1; values: (v, k) [rad | m] their values, k = len(joints), or none (0, k) where the
@@ -66,9 +67,9 @@ def singular_configurations(robot: Robot, task: TaskName | None = None) -> tuple
     missed; what is listed is tested at random values of the joints that it leaves free. `task` is what counts of the
     tool's twist, as in `differential_kinematics`. Raises InputError for a robot without joints.
     """
+    kind = motion_task(robot, task)
     kept = _kept.setdefault(robot, {})
     if task not in kept:
-        kind = motion_task(robot, task)
         search = Search(robot, kind)
         found = [_named(robot, kind, search, condition) for condition in search.conditions()]
         order = ["shoulder", "elbow", "boundary", "wrist", "general"]

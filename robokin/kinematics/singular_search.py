@@ -32,6 +32,12 @@ SAMPLES = 4
 STARTS = 96
 """Starts of descents; PUMA's three surfaces are met from one in three each."""
 
+MANY = 12
+"""Joints from which on there are fewer starts, for a step costs their square: so many joints leave a rank rarely."""
+
+FEWEST = 12
+"""Starts at least."""
+
 FOUND = 1e-9
 """A least singular value, as a part of the greatest, that is zero: descents end at 1e-12 or do not converge."""
 
@@ -44,6 +50,10 @@ SAME = 1e-5
 BESIDE = 1e-2
 """Configurations that miss a known condition by less are not looked at: where two surfaces cross, a least singular
 value that is the product of two small numbers passes for zero beside them."""
+
+STEEPEST = 50.0
+"""How fast a least singular value, as a part of the greatest, grows with a joint [1/rad | 1/size] at most: a column of
+the Jacobian changes by some columns at most, of which an arm has tens."""
 
 LONGEST = 0.3
 """The longest step of a descent [rad | size]."""
@@ -128,6 +138,8 @@ class Search:
             return None
         step = grid[1] - grid[0]
         values = _golden(worst, grid[dips] - step, grid[dips] + step)
+        if not len(values):
+            return None
         values = values[worst(values) <= FOUND]
         values = _distinct(self.tidy(values, turns)[:, None], np.array([turns]))
         if not len(values):
@@ -151,7 +163,8 @@ class Search:
 
     def several(self, singles: list[Condition]) -> list[Condition]:
         """Conditions on several joints, met by descending from random starts."""
-        x = self.descended(self.drawn(STARTS))
+        starts = STARTS if self.robot.n <= MANY else max(FEWEST, STARTS * MANY**2 // self.robot.n**2)
+        x = self.descended(self.drawn(starts))
         x = x[self.least(x) <= FOUND]
         for found in singles:
             x = x[~self.beside(x, found)]
@@ -243,13 +256,20 @@ class Search:
 
 
 def _golden(f: Callable[[Array], Array], low: Array, high: Array) -> Array:
-    """Where a function is least between low and high, (k,) each, by the golden section."""
+    """Where a function is least between low and high, (k,) each, by the golden section.
+
+    Only where it can be zero: a place is left out as soon as the function is too great for its interval.
+    """
     ratio = (np.sqrt(5.0) - 1.0) / 2.0
     a, b = low, high
     for _ in range(80):
+        if not len(a):
+            break
         c, d = b - ratio * (b - a), a + ratio * (b - a)
-        left = f(c) < f(d)
-        a, b = np.where(left, a, c), np.where(left, d, b)
+        at_c, at_d = f(c), f(d)
+        left = at_c < at_d
+        hope = np.minimum(at_c, at_d) <= np.maximum(STEEPEST * (b - a), HOLDS)
+        a, b = np.where(left, a, c)[hope], np.where(left, d, b)[hope]
     return np.asarray((a + b) / 2.0)
 
 

@@ -19,12 +19,14 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robokin.brief import Answer, Brief
 from robokin.errors import InputError
+from robokin.expected import expect_choice, expect_finite
 from robokin.kinematics.chain import chain_of, chain_size
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
 from robokin.kinematics.structure import structure_of
-from robokin.model import Robot
+from robokin.model import Robot, expect_robot
 
 Array = NDArray[np.float64]
 TaskName = Literal["pose", "position", "orientation"]
@@ -36,8 +38,8 @@ tables printed with five; the rounding of the calculation is far below (1e-15)."
 ROWS = {"pose": slice(0, 6), "position": slice(0, 3), "orientation": slice(3, 6)}
 
 
-@dataclass(frozen=True, eq=False)
-class MotionTask:
+@dataclass(frozen=True, eq=False, repr=False)
+class MotionTask(Brief):
     """Which part of the twist counts for an arm.
 
     dimension: M, in how many directions the arm moves the tool at a generic configuration; span: (6, s), lengths in
@@ -55,8 +57,8 @@ class MotionTask:
         return ROWS[self.name]
 
 
-@dataclass(frozen=True, eq=False)
-class Differential:
+@dataclass(frozen=True, eq=False, repr=False)
+class Differential(Answer):
     """Differential kinematics at configurations: leading dimensions as those of q.
 
     jacobian: (..., 6, n) [m/rad | 1, 1 | 0], as `robokin.jacobian`; rank: (...); singular_values: (..., M), greatest
@@ -74,10 +76,13 @@ class Differential:
     manipulability: Array
     condition: Array
     null_space: Array
+    robot: Robot
+    q: Array
+    frame: Literal["base", "tool"] = "base"
 
 
-@dataclass(frozen=True, eq=False)
-class Lost:
+@dataclass(frozen=True, eq=False, repr=False)
+class Lost(Brief):
     """A direction that the tool cannot move in.
 
     twist: (6,) of length 1, linear before angular, lengths in sizes; words: the same in words.
@@ -97,10 +102,11 @@ def motion_task(robot: Robot, name: TaskName | None = None) -> MotionTask:
     turn the tool (a wrist), if they turn it about as many axes. For all others the whole pose counts. Raises
     InputError for a robot without joints, or for another name.
     """
+    robot = expect_robot(robot)
     if not robot.n:
         raise InputError(f"{robot.name} has no joints, expected a robot that can move")
-    if name is not None and name not in ROWS:
-        raise InputError(f"found task '{name}', expected {' or '.join(get_args(TaskName))}")
+    if name is not None:
+        expect_choice(name, get_args(TaskName), "task")
     kept = _tasks.setdefault(robot, {})
     if name not in kept:
         kept[name] = _task(robot, name)
@@ -147,7 +153,10 @@ def differential_kinematics(
     orientation, by itself as `motion_task` says. Raises InputError for a robot without joints.
     """
     kind = motion_task(robot, task)
+    q = expect_finite(q, "q", "finite joint values (..., n)")
     J = jacobian(robot, q, frame)
+    if not np.isfinite(J).all():
+        raise InputError("q: the pose is too far away for a number, expected less")
     M, rows = kind.dimension, kind.rows
     _, values, null = np.linalg.svd(scaled(robot, J, kind.size)[..., rows, :])
     values = values[..., :M]
@@ -158,7 +167,7 @@ def differential_kinematics(
     with np.errstate(divide="ignore", invalid="ignore"):
         condition = np.where(regular, greatest / np.min(values, axis=-1, initial=np.inf), np.inf)
     manipulability = np.where(regular, np.prod(raw, axis=-1), 0.0)
-    return Differential(kind, J, rank, values, raw, manipulability, condition, null)
+    return Differential(kind, J, rank, values, raw, manipulability, condition, null, robot, q, frame)
 
 
 def null_space_joints(found: Differential) -> list[tuple[int, ...]]:

@@ -116,9 +116,9 @@ def _slide(number: int, height: str, sign: int) -> Stage:
 
 
 def wrist_point(sheet: Sheet, last: int) -> Sequence[Sheet]:
-    """φ and p_W of a planar arm of three turning joints, from the hand's pose in the arm's frame."""
+    """φ and p_W of a planar arm of three turning joints, from the tool's pose in the arm's frame."""
     a = f"a{index(last)}"
-    sheet = sheet.step("φ", "atan2(n_y, n_x)", "angle", "the hand's angle: its x axis in the plane")
+    sheet = sheet.step("φ", "atan2(n_y, n_x)", "angle", "the end effector's angle: its x axis in the plane")
     if not sheet[a]:
         sheet = sheet.step("p_Wx", "p_x", "length", "the last link has no length")
         return [sheet.step("p_Wy", "p_y", "length")]

@@ -1,7 +1,10 @@
 """What robots, mechanisms and wheeled bases are: frozen values with read-only arrays; no files, no printing."""
 
-from robokin.model.mechanism import Mechanism, MechanismJoint, Rounding
-from robokin.model.robot import Joint, JointType, Robot
-from robokin.model.wheeled import Wheel, WheeledBase
+from robokin.model.mechanism import Mechanism, MechanismJoint, Rounding, expect_mechanism
+from robokin.model.robot import Joint, JointType, Robot, expect_robot
+from robokin.model.wheeled import Wheel, WheeledBase, expect_wheeled
 
-__all__ = ["Joint", "JointType", "Mechanism", "MechanismJoint", "Robot", "Rounding", "Wheel", "WheeledBase"]
+__all__ = [
+    "Joint", "JointType", "Mechanism", "MechanismJoint", "Robot", "Rounding", "Wheel", "WheeledBase",
+    "expect_mechanism", "expect_robot", "expect_wheeled",
+]  # fmt: skip

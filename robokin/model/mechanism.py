@@ -10,6 +10,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Answer, Brief
+from robokin.errors import Note, shown
+from robokin.expected import expect_kind
 from robokin.model.blueprint import AssemblyMode
 from robokin.units import Units
 
@@ -20,8 +23,8 @@ LAMBDA: Mapping[str, int] = MappingProxyType({"planar": 3, "spherical": 3, "spat
 """Freedoms of an unconstrained link by the space that it lives in: Grübler's λ."""
 
 
-@dataclass(frozen=True, eq=False)
-class Rounding:
+@dataclass(frozen=True, eq=False, repr=False)
+class Rounding(Brief):
     """How far a joint's numbers may be off: a unit in the last place that was written, 0 for what is exact.
 
     at (3,) [m], axes (k, 3), pitch [m/rad].
@@ -32,8 +35,8 @@ class Rounding:
     pitch: float = 0.0
 
 
-@dataclass(frozen=True, eq=False)
-class MechanismJoint:
+@dataclass(frozen=True, eq=False, repr=False)
+class MechanismJoint(Brief):
     """A joint between two or more links.
 
     `freedoms` is f, what it lets two links do against each other; a joint of m links counts as m - 1
@@ -76,7 +79,7 @@ class MechanismJoint:
 
 
 @dataclass(frozen=True, eq=False)
-class Mechanism:
+class Mechanism(Answer):
     """Links, the joints between them, the link that stands still, and the one that the others serve, if named.
 
     `ground_named` says whether the ground is named as such, or just the first link. `expected` is what the source says:
@@ -101,6 +104,7 @@ class Mechanism:
     modes: tuple[AssemblyMode, ...] = ()
     mode: int = 0
     modes_complete: bool = True
+    notes: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
         """Make the mappings read-only."""
@@ -127,3 +131,11 @@ class Mechanism:
     def __repr__(self) -> str:
         """A line that names the mechanism."""
         return f"<Mechanism {self.id or self.name!r}: {len(self.links)} links, {len(self.joints)} joints>"
+
+
+def expect_mechanism(value: object, argument: str = "mechanism") -> Mechanism:
+    """The value, if it is a mechanism. Raises InputTypeError that says how to get one."""
+    name = f"'{shown(value)}'" if isinstance(value, str) else "name_or_path"
+    how = f"a Mechanism, as robokin.load_mechanism({name}) gives it"
+    mechanism: Mechanism = expect_kind(value, Mechanism, argument, how)
+    return mechanism

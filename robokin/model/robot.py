@@ -12,7 +12,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from robokin.errors import InputError
+from robokin.brief import Answer, Brief
+from robokin.errors import InputError, Note, shown
+from robokin.expected import expect_kind, expect_numbers
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -43,13 +45,14 @@ class JointType(StrEnum):
         return self.value[0].upper()
 
 
-@dataclass(frozen=True, eq=False)
-class Joint:
+@dataclass(frozen=True, eq=False, repr=False)
+class Joint(Brief):
     """One row of the table.
 
     In a DH table the cells `theta`, `d`, `a`, `alpha` hold the constants of the row (`theta` of a
     revolute and `d` of a prismatic row are 0: the variable stands there, shifted by `offset`). In the
-    `frames` convention the row is `origin` (4, 4), then the motion about or along `axis` (3,).
+    `frames` convention the row is `origin` (4, 4), then the motion about or along `axis` (3,). `sense` is the sign with
+    which the variable enters: theta = sense · q + offset (d of a slide, the motion of a `frames` row), 1 or -1.
     `texts` are the cells that name parameters, as they are written (`("a", "l1/2")`); of an origin the
     coordinates `x`, `y`, `z`.
     """
@@ -65,6 +68,7 @@ class Joint:
     origin: Array | None = None
     axis: Array | None = None
     texts: tuple[tuple[str, str], ...] = ()
+    sense: int = 1
 
     def __post_init__(self) -> None:
         """Make the arrays read-only, limits beyond `NO_LIMIT` none; refuse those between which there is no number."""
@@ -90,11 +94,12 @@ class Joint:
 
 
 @dataclass(frozen=True, eq=False)
-class Robot:
+class Robot(Answer):
     """A serial chain: T = base · row 1 · … · row m · tool, as the description gives it.
 
     `rows` are all rows of the table, `joints` those with a variable, in the order of q. `texts` are the
-    coordinates of base and tool that name parameters (`("tool z", "d6")`).
+    coordinates of base and tool that name parameters (`("tool z", "d6")`); `notes` say what in the description looks
+    like a slip, such as angles in another unit.
     """
 
     name: str
@@ -109,6 +114,7 @@ class Robot:
     tool: Array = field(default_factory=lambda: np.eye(4))
     poses: Mapping[str, Array] = field(default_factory=dict)
     texts: tuple[tuple[str, str], ...] = ()
+    notes: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
         """Make every array and mapping read-only; refuse poses of the wrong length."""
@@ -144,13 +150,22 @@ class Robot:
         return mask
 
     @cached_property
+    def senses(self) -> Array:
+        """(n,) the sign with which each variable enters, 1 or -1."""
+        return _read_only(np.array([float(joint.sense) for joint in self.joints]))
+
+    @cached_property
     def limits(self) -> Array:
         """(n, 2) least and greatest value of each joint [rad | m], ±inf where there is none."""
         return _read_only(np.array([joint.limits for joint in self.joints]).reshape(self.n, 2))
 
     def within_limits(self, q: ArrayLike) -> NDArray[np.bool_]:
         """(...) whether each q: (..., n) [rad | m] respects every limit; limits are inclusive."""
-        q = np.asarray(q, dtype=np.float64)
+        q = expect_numbers(q, "q", f"joint values: numbers in an array (..., {self.n})")
+        if q.ndim == 0 or q.shape[-1] != self.n:
+            raise InputError(
+                f"q: found an array of shape {q.shape}, expected (..., {self.n}): one value for each joint"
+            )
         low, high = tolerated(self.limits)
         return np.asarray(np.all((q >= low) & (q <= high), axis=-1))
 
@@ -162,6 +177,15 @@ class Robot:
     def __repr__(self) -> str:
         """A line that names the robot."""
         return f"<Robot {self.id or self.name!r}: {self.types or 'no joints'}, {self.convention} convention>"
+
+
+def expect_robot(value: object, argument: str = "robot") -> Robot:
+    """The value, if it is a robot. Raises InputTypeError that says how to get one."""
+    if isinstance(value, Robot):
+        return value
+    name = f"'{shown(value)}'" if isinstance(value, str) else "name_or_path"
+    robot: Robot = expect_kind(value, Robot, argument, f"a Robot, as robokin.load({name}) gives it")
+    return robot
 
 
 def tolerated(limits: Array) -> tuple[Array, Array]:

@@ -6,6 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from types import MappingProxyType
 
+from robokin.brief import Answer
+from robokin.errors import Note, shown
+from robokin.expected import expect_kind
 from robokin.units import Units
 
 
@@ -34,7 +37,7 @@ class Wheel:
 
 
 @dataclass(frozen=True, eq=False)
-class WheeledBase:
+class WheeledBase(Answer):
     """A rigid base on wheels on a plane; `parallel` says that its steered wheels always point the same way."""
 
     name: str
@@ -46,6 +49,7 @@ class WheeledBase:
     units: Units = field(default_factory=Units)
     parameters: Mapping[str, float] = field(default_factory=dict)
     expected: Mapping[str, int] = field(default_factory=dict)
+    notes: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
         """Make the mappings read-only."""
@@ -68,3 +72,12 @@ class WheeledBase:
     def __repr__(self) -> str:
         """A line that names the base."""
         return f"<WheeledBase {self.id or self.name!r}: {len(self.wheels)} wheels>"
+
+
+def expect_wheeled(value: object, argument: str = "base") -> WheeledBase:
+    """The value, if it is a wheeled base. Raises InputTypeError that says how to get one."""
+    name = f"'{shown(value)}'" if isinstance(value, str) else "name_or_path"
+    base: WheeledBase = expect_kind(
+        value, WheeledBase, argument, f"a WheeledBase, as robokin.load_wheeled({name}) gives it"
+    )
+    return base

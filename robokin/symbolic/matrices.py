@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Brief
 from robokin.kinematics.chain import z_to
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial.rotations import cos_sin
@@ -21,8 +22,8 @@ from robokin.units import Units
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class SymbolicKinematics:
+@dataclass(frozen=True, repr=False)
+class SymbolicKinematics(Brief):
     """T = A1 A2 … An, each a matrix (4, 4) of sums, and what their symbols mean.
 
     `values` are numbers in the units, `definitions` sums of joint values q1, q2, … and numbers, and

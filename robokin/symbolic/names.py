@@ -85,9 +85,12 @@ class Names:
         return symbol(name, TRAIL, i + 1)
 
     def turn(self, joint: Joint, i: int) -> Angle:
-        """The angle of a revolute row. An offset of whole quarter turns changes signs, another is added to q."""
+        """The angle of a revolute row. An offset of whole quarter turns changes signs, another is added to q.
+
+        So is one to a variable that enters with the other sign.
+        """
         part = self.variables[id(joint)]
-        quarters = quarters_of(joint.offset)
+        quarters = quarters_of(joint.offset) if joint.sense > 0 else None
         if quarters is None:
             quarters, q, part = 0, part, f"theta{self.labels[i]}"
             self.definitions[part] = self._shifted(q, joint, self.robot.units.radians, self.units.radians)
@@ -128,10 +131,11 @@ class Names:
         return name
 
     def _shifted(self, q: str, joint: Joint, own: float, unit: float) -> str:
-        """`q + offset`, written."""
+        """`q + offset`, written; `offset - q` for the other sense."""
         text = dict(joint.texts).get("offset", "")
         formula = self._formula(text, joint.offset, own, unit, (LEAD, 1))
-        return written(total((symbol(q, LEAD, 0), number(in_unit(joint.offset, unit)) if formula is None else formula)))
+        constant = number(in_unit(joint.offset, unit)) if formula is None else formula
+        return written(total((times(number(float(joint.sense)), symbol(q, LEAD, 0)), constant)))
 
     def _formula(self, text: str, value: float, own: float, unit: float, place: tuple[int, ...]) -> Sum | None:
         """A cell's text in its parameters' names, each worth its value in the unit; None if it is not linear."""

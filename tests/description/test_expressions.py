@@ -289,16 +289,16 @@ def test_nearest_names():
     ],
 )  # fmt: skip
 def test_long_and_deep_expressions_end_soon_in_a_sentence(text):
-    start = time.perf_counter()
+    start = time.process_time()
     refused(text)
-    assert time.perf_counter() - start < 1.0
+    assert time.process_time() - start < 1.0
 
 
 def test_what_is_long_and_right_is_read():
-    start = time.perf_counter()
+    start = time.process_time()
     assert radians("1+" * 4999 + "1") == 5000.0
     assert radians("-" * 9998 + "1") == 1.0
     assert radians("1" * 300) == float("1" * 300)
     assert radians("(" * 49 + "1" + ")" * 49) == 1.0
     assert radians("1" + " " * (MAX_LENGTH - 1)) == 1.0
-    assert time.perf_counter() - start < 1.0
+    assert time.process_time() - start < 1.0

@@ -250,7 +250,7 @@ def replaced(old, new):
         (replaced("[ground, crank, coupler, rocker]", "[ground]"), "4:8", "found 1 link, expected at least two"),
         (replaced("[ground, crank, coupler, rocker]", "[]"), "4:8", "found 0 links"),
         (replaced("[ground, crank, coupler, rocker]", "[a, b, a]"), "4:15", "found 'a' twice in the links"),
-        (replaced("[ground, crank, coupler, rocker]", "[a, {b: 1}]"), "4:13", "found the unknown key 'b' in a link"),
+        (replaced("rocker]", "{name: rocker, b: 1}]"), "4:48", "found the unknown key 'b' in a link"),
         (replaced("[ground, crank, coupler, rocker]", "[a, ~]"), "4:12", "found nothing, expected a name"),
         (replaced("joints:\n", "ground: crnk\njoints:\n"), "5:9", "did you mean 'crank'"),
         (replaced("joints:\n", "ground: [a]\njoints:\n"), "5:9", "expected the ground"),

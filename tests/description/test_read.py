@@ -92,7 +92,7 @@ def test_a_name_is_what_is_written(name):
         (arm(tail="1: 1\n"), "6:1", "found the unknown key '1'"),
         (arm(tail='"a\\e[2J": 1\n'), "6:1", "found the unknown key 'a\\x1b[2J'"),
         (arm(tail=f"? {'k' * 2000}\n: 1\n"), "6:3", "..."),
-        ("robokin: 1", "1:1", "found no 'name'"),
+        ("robokin: 1\njoints: [{type: R}]", "1:1", "found no 'name'"),
         ("- robokin: 1\n", "1:1", "found a list of 1, expected a description"),
         ("hello", "1:1", "found 'hello', expected a description"),
         ("{}", "1:1", "found nothing in the file"),
@@ -195,11 +195,11 @@ def test_wrong_overrides(overrides, said):
 
 
 def test_thirty_thousand_parameters_take_no_time():
-    start = time.perf_counter()
+    start = time.process_time()
     names = [f"p{i}: p{i + 1}" for i in range(30_000)]
     robot = read_text(arm(head=HEAD + f"parameters: {{{', '.join(names)}, p30000: 7}}\n"))
     assert robot.parameters["p0"] == 7.0
-    assert time.perf_counter() - start < 10.0
+    assert time.process_time() - start < 10.0
 
 
 # Files -----------------------------------------------------------------------------------------------
@@ -291,10 +291,10 @@ def test_a_file_that_may_not_be_read(tmp_path):
 
 
 def test_an_endless_file_is_cut_off():
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(InputError):
         read_file(Path("/dev/zero"))
-    assert time.perf_counter() - start < 5.0
+    assert time.process_time() - start < 5.0
 
 
 def test_random_bytes_end_in_a_sentence(tmp_path):

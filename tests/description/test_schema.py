@@ -8,7 +8,7 @@ import pytest
 import yaml
 from description.texts import DEGREES, arm, linkage
 
-from robokin.description.library import library_folder, library_names
+from robokin.description.library import library_files
 from robokin.description.schema import json_schema
 
 SCHEMA = json_schema()
@@ -63,9 +63,9 @@ def test_the_schema_is_json_and_holds_every_definition_that_it_names():
         assert part[: part.index('"')] in SCHEMA["$defs"]
 
 
-@pytest.mark.parametrize("name", library_names())
-def test_the_library_keeps_to_the_schema(name):
-    value = yaml.safe_load((library_folder() / f"{name}.yaml").read_text(encoding="utf-8"))
+@pytest.mark.parametrize("path", library_files(), ids=lambda path: path.stem)
+def test_the_library_keeps_to_the_schema(path):
+    value = yaml.safe_load(path.read_text(encoding="utf-8"))
     assert list(errors(value, SCHEMA)) == []
 
 

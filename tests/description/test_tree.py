@@ -145,7 +145,7 @@ def test_rows_can_repeat_by_anchors_and_merges():
 
 @pytest.mark.parametrize("key", ["[1, 2]", "{a: 1}", "? [1]"])
 def test_a_key_is_a_word(loader, key):
-    assert "as a key, expected a word" in error_of(f"{key}: 1\n").message
+    assert "as a key, expected a word" in error_of(f"{key}: 1\n", mistakes=2 if key == "? [1]" else 1).message
 
 
 # What no description needs ---------------------------------------------------------------------------
@@ -164,7 +164,9 @@ def test_a_key_is_a_word(loader, key):
         "!<tag:yaml.org,2002:float> 1",
     ],
 )
-@pytest.mark.parametrize("before", ["", "robokin: ", "robokin: 1\nname: x\njoints: [{type: R, a: "])
+@pytest.mark.parametrize(
+    "before", ["", "name: x\njoints: [{type: R}]\nrobokin: ", "robokin: 1\nname: x\njoints: [{type: R, a: "]
+)
 def test_a_tag_is_refused_and_runs_nothing(loader, tag, before):
     close = "}]" if before.endswith("a: ") else ""
     error = error_of(before + tag + close + "\n")
@@ -174,9 +176,9 @@ def test_a_tag_is_refused_and_runs_nothing(loader, tag, before):
 
 @pytest.mark.parametrize("opening", ["[", "{", "- ", "? ", "[{a: ", "{a: ["])
 def test_deep_nesting_is_refused_at_once(loader, opening):
-    start = time.perf_counter()
+    start = time.process_time()
     assert "levels of nesting" in error_of(opening * 100_000).message
-    assert time.perf_counter() - start < 5.0
+    assert time.process_time() - start < 5.0
 
 
 def refusing(parser, limit, late):
@@ -273,9 +275,9 @@ BOMBS = {
 
 @pytest.mark.parametrize("bomb", BOMBS.values(), ids=BOMBS)
 def test_aliases_cannot_multiply(loader, bomb):
-    start = time.perf_counter()
+    start = time.process_time()
     assert "aliases written out" in error_of(bomb).message
-    assert time.perf_counter() - start < 10.0
+    assert time.process_time() - start < 10.0
 
 
 @pytest.mark.parametrize("second", ["---\na: 1\n", "...\n---\n", "--- 1"])
@@ -339,15 +341,16 @@ def test_what_is_no_yaml_is_said_with_its_place(text, at, said):
 CUT = [
     ("joints: [{type: R, origin: Trans(0, 0, 1)}]", "1:28"),
     ("joints: [{type: R, origin: DH(0, 0, 0, 0), axis: z}]", "1:28"),
-    ("joints: [{origin: Rot(z, 90) Trans(0, 0, 0)}]", "1:19"),
-    ("poses: {home: [0, atan2(1, 2), 0]}", "1:19"),
+    ("joints: [{origin: Rot(z, 90) Trans(0, 0, 0), type: R}]", "1:19"),
+    ("poses: {home: [atan2(1, 2)], a: [0]}", "1:16"),
     ("poses: {home: [max(1, 2, 3)]}", "1:16"),
 ]
 
 
 @pytest.mark.parametrize(("text", "at"), CUT)
 def test_an_expression_that_a_comma_cuts_wants_quotes(loader, text, at):
-    error = error_of(text)
+    tail = "joints: [{type: R}]\n" if "poses" in text else "convention: frames\n"
+    error = error_of(f"{text}\nrobokin: 1\nname: x\n{tail}")
     assert f"{error.line}:{error.column}" == at
     assert "cut off at a comma, expected the expression in quotes" in error.message
 

@@ -80,7 +80,7 @@ def test_parameters_can_be_set():
         ("type: swedish, at: [0, 0], roller: 180", "180", "slip in the direction in which it rolls"),
         ("type: fixed, at: [0, 0], driven: yes", "yes", "expected true or false"),
         ("type: fixed, at: [0, 0], drivn: true", "drivn", "did you mean 'driven'"),
-        ("type: fixed, at: [1e99, 0]", "[1e99", "expected a size of a machine"),
+        ("type: fixed, at: [1e99, 0]", "1e99", "expected a length below 1e+06 m"),
     ],
 )
 def test_a_wrong_wheel(wheel, at, said):

@@ -37,17 +37,23 @@ def cell(expression, name="a", head=DEGREES):
     return getattr(only_row(f'type: P, {name}: "{expression}"', head=head), name)
 
 
-def error_of(text, **given):
-    """The error that a text makes; it names a line and a column and says what was expected."""
+def error_of(text, *, mistakes=1, **given):
+    """The first error that a text makes; it names a line and a column and says what was expected.
+
+    So many mistakes are listed, and nothing that follows from them.
+    """
     with pytest.raises(DescriptionError) as caught:
         read_text(text, "arm.yaml", **given)
     error = caught.value
-    assert error.line >= 1
-    assert error.column >= 1
-    assert str(error).startswith(f"arm.yaml:{error.line}:{error.column}: ")
-    assert any(word in error.message for word in HELPFUL), error.message
-    assert "\n" not in str(error)
-    assert str(error).isprintable()
+    for one in error.errors:
+        assert one.line >= 1
+        assert one.column >= 1
+        assert one.sentence == f"arm.yaml:{one.line}:{one.column}: {one.message}"
+        assert any(word in one.message for word in HELPFUL), one.message
+        assert one.sentence.isprintable()
+        assert all(line.isprintable() for line in one.excerpt.split("\n"))
+    assert str(error).startswith(error.sentence)
+    assert len(error.errors) == mistakes, str(error)
     return error
 
 

@@ -151,7 +151,7 @@ def test_what_an_arm_never_has_is_no_loss(rng):
 def test_a_robot_without_joints_and_an_unknown_task_are_refused():
     with pytest.raises(InputError, match="no joints"):
         DK(robokin.load("assembly"), [])
-    with pytest.raises(InputError, match="expected pose or position or orientation"):
+    with pytest.raises(InputError, match="expected 'pose', 'position' or 'orientation'"):
         DK(robokin.load("puma560"), np.zeros(6), task="twist")
 
 
