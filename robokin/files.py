@@ -1,0 +1,92 @@
+"""Files and standard input, opened for reading: the one place, with one sentence for whatever cannot be read.
+
+Whatever has a name may be read: files, pipes, devices, links to them. A reader takes bounded pieces, or one piece of
+bounded size by `read_up_to`, so that a device that never ends costs no memory; waiting for the writer of a pipe can be
+interrupted.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO
+
+from robokin.errors import InputError, shown
+
+STDIN = "standard input"
+"""What messages call it."""
+
+MAX_LINKS = 40
+"""Links that are followed one after the other, as Linux does."""
+
+CLOSED: set[int] = set()
+"""Those of the descriptors 0, 1 and 2 that were closed when the program started."""
+
+
+@contextlib.contextmanager
+def open_input(source: str, expected: str) -> Iterator[tuple[IO[bytes], str]]:
+    """The stream that `-` or a path means, and the name to give it in messages.
+
+    `expected` ends the sentence about what cannot be opened. Raises InputError.
+    """
+    if source != "-":
+        with open_path(source, expected) as stream:
+            yield stream, source
+        return
+    _require_standard_input(expected)
+    yield sys.stdin.buffer, STDIN
+
+
+@contextlib.contextmanager
+def open_path(path: str, expected: str) -> Iterator[IO[bytes]]:
+    """The stream that a path means, whatever it is called. Raises InputError for what cannot be opened."""
+    if descriptor_of(path) == 0:
+        _require_standard_input(expected)
+    try:
+        stream = open(path, "rb")  # noqa: SIM115, PTH123 - only opening may fail with this sentence
+    except (OSError, ValueError) as error:
+        name = path if isinstance(error, OSError) else shown(path)
+        raise InputError(f"{name}: {unreadable(error)}, expected {expected}") from None
+    with stream:
+        yield stream
+
+
+def read_up_to(stream: IO[bytes], name: str, most: int, expected: str) -> bytes:
+    """What a stream holds, or its first `most` + 1 bytes where it holds more. Raises InputError."""
+    try:
+        return stream.read(most + 1)
+    except OSError as error:
+        raise InputError(f"{name}: {unreadable(error)}, expected {expected}") from None
+
+
+def _require_standard_input(expected: str) -> None:
+    if sys.stdin is None or 0 in CLOSED:
+        raise InputError(f"{STDIN} is closed, expected {expected}")
+
+
+def unreadable(error: OSError | ValueError) -> str:
+    """Why something cannot be read."""
+    if isinstance(error, FileNotFoundError):
+        return "no such file"
+    if isinstance(error, IsADirectoryError):
+        return "found a directory"
+    if isinstance(error, OSError):
+        return str(error.strerror or error)
+    return "this is no path"  # one with a null character
+
+
+def descriptor_of(place: str) -> int | None:
+    """The number of the open descriptor that a path means, such as 1 for /dev/stdout; None for any other path."""
+    ours = ("/dev/fd", f"/proc/{os.getpid()}/fd")
+    for _ in range(MAX_LINKS):
+        folder, name = os.path.split(place)
+        try:
+            if name.isdecimal() and os.path.realpath(folder or ".") in ours:
+                return int(name)
+            place = str(Path(folder) / Path(place).readlink())
+        except (OSError, ValueError):
+            return None
+    return None

@@ -1,0 +1,107 @@
+"""Columns that are not understood, on their way from the input to the output: the time of a row, its number."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import deque
+from collections.abc import Collection, Iterable, Sequence
+from typing import Any
+
+from robokin.errors import shown
+from robokin.tables.text import Say
+
+QUOTE = '"'
+
+SPECIAL = re.compile(r'["\r\n]|^#')
+"""What is quoted: beside RFC 4180 a # at the beginning of a line, which would make a comment of it."""
+
+NUMERAL = re.compile(r"-?(0|[1-9]\d{0,14})(\.\d{1,15})?", re.ASCII)
+"""A cell that JSON writes as a number; 007 and 1e5 may be names."""
+
+WRITTEN_BY_IK = ("target", "solution", "branch", "within_limits", "position_error", "angle_error", "reason")
+"""Beside joint values; where the first two stand together, the table is one of `robokin ik`."""
+
+
+class Carried:
+    """Cells that go through, in the order of the rows: the reader puts them in, the writer takes them out."""
+
+    def __init__(self, taken: Collection[str], say: Say, *, wanted: bool = True) -> None:
+        """`taken` are the names that the output has itself; `wanted` tells whether anything goes through."""
+        self.taken, self.say, self.wanted = frozenset(taken), say, wanted
+        self.names: tuple[str, ...] = ()
+        self.typed = False
+        """Whether the cells are values of JSON; else they are text."""
+        self.rows: deque[Sequence[Any]] = deque()
+
+    def choose(self, headings: Sequence[str], used: Collection[int]) -> list[int]:
+        """Which columns of a table go through, by where they stand; `used` are those that were understood."""
+        if not self.wanted:
+            return []
+        by_ik = WRITTEN_BY_IK if {"target", "solution"} <= {*headings} else ()
+        places: list[int] = []
+        seen = set(self.taken)
+        for i, name in enumerate(headings):
+            if i in used or name in by_ik or not name:
+                continue
+            if name in seen:
+                if not OWN.fullmatch(name):
+                    self.say(f"the column '{shown(name)}' is left out, since the output has one of that name")
+                continue
+            places.append(i)
+            seen.add(name)
+        self.names = tuple(headings[i] for i in places)
+        return places
+
+    def put(self, rows: Iterable[Sequence[Any]]) -> None:
+        """The cells of some rows."""
+        self.rows.extend(rows)
+
+    def cells(self) -> list[str]:
+        """The next row's cells, as text."""
+        return [value if isinstance(value, str) else _text(value) for value in self._next()]
+
+    def in_front_of(self, record: dict[str, Any]) -> dict[str, Any]:
+        """A JSON document behind the next row's cells; those of a CSV are numbers where they are plain decimal ones."""
+        values = self._next() if self.names else ()
+        own = dict(zip(self.names, values if self.typed else map(_value, values), strict=True))
+        return own | {key: value for key, value in record.items() if key not in own}
+
+    def before(self, head: bytes, lines: bytes, cells: Iterable[Sequence[str]] | None = None) -> bytes:
+        """A heading and lines of CSV, each behind its cells: those that are given, or the next ones."""
+        if not self.names:
+            return head + lines
+        first = [_line(self.names) + head.removesuffix(b"\n")] if head else []
+        rows = lines.splitlines()
+        own = (self.cells() for _ in rows) if cells is None else cells
+        return b"".join(line + b"\n" for line in [*first, *map(bytes.__add__, map(_line, own), rows)])
+
+    def _next(self) -> Sequence[Any]:
+        return self.rows.popleft() if self.rows else ()
+
+
+OWN = re.compile(r"q\d+|[xyz]|roll|pitch|yaw|q[wxyz]|phi|theta|psi|r[xyz]|[ABCWPR]|m[1-4][1-4]")
+"""Columns of joint values and poses: those that are computed take the place of those that were read."""
+
+
+def nothing() -> Carried:
+    """Nothing goes through."""
+    return Carried((), lambda sentence: None, wanted=False)
+
+
+def _line(cells: Sequence[str]) -> bytes:
+    """Cells and the comma behind the last, quoted where they need it."""
+    line = ",".join(cells)
+    if SPECIAL.search(line) or line.count(",") >= len(cells):
+        line = ",".join(f'"{cell.replace(QUOTE, QUOTE * 2)}"' for cell in cells)
+    return line.encode(errors="backslashreplace") + b","
+
+
+def _text(value: Any) -> str:
+    return "" if value is None else json.dumps(value, ensure_ascii=False)
+
+
+def _value(value: str) -> Any:
+    if not NUMERAL.fullmatch(value):
+        return value
+    return float(value) if "." in value else int(value)
