@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from robokin.cli.check_poses import no_number
-from robokin.cli.checks import PASS, Item
+from robokin.cli.checks import PASS, WRONG, Item
 from robokin.errors import InputError, shown
-
-WRONG_COUNT = "wrong"
+from robokin.grading.feedback import Words
 
 
 def whole_number(text: str, option: str) -> int | None:
@@ -33,5 +32,7 @@ def count_item(id: str, text: str, option: str, right: int | None, note: Callabl
         return Item(id, "not a number" if text.strip() else "blank", 0.0, right, None, {"count": None})
     if value == right:
         return Item(id, PASS, 1.0, right, value, {"count": 0.0})
-    detail = f"found {value}, expected {right}" + (f": {said}" if (said := note()) else "")
-    return Item(id, WRONG_COUNT, 0.0, right, value, {"count": float(value - right)}, detail)
+    side = "too many" if value > right else "too few"
+    answer = f"found {value}, expected {right}" + (f": {said}" if (said := note()) else "")
+    words = Words("", f"{value} is {side}", answer)
+    return Item(id, WRONG, 0.0, right, value, {"count": float(value - right)}, words)

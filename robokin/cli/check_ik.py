@@ -2,28 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.cli.arguments import in_units, joint_factors, parse_configuration, split_vector
-from robokin.cli.check_fk import HALVES, NOT_ANSWERED, answers_by_question, keyed_rows
-from robokin.cli.check_poses import Answer, no_number, pose_reader, pose_value
-from robokin.cli.check_rows import BLANK, IDS, NOT_A_NUMBER, STUDENTS, NoAnswerError, Row, Sheet, read_sheet, sized
-from robokin.cli.checks import PASS, Item
-from robokin.cli.output.numbers import counted, show
-from robokin.cli.target_rows import CLEAN
+from robokin.cli.arguments import joint_factors, parse_configuration, split_vector
+from robokin.cli.check_fk import HALVES, NOT_ANSWERED, REPEATED, answers_by_question, keyed_rows
+from robokin.cli.check_mistakes import joints_mistake, set_meant
+from robokin.cli.check_poses import Answer, PoseReader, no_number, pose_reader
+from robokin.cli.check_rows import BLANK, IDS, NOT_A_NUMBER, STUDENTS, NoAnswerError, Row, Sheet, sized
+from robokin.cli.checks import NOT_DECIDED, PASS, Item
+from robokin.cli.joint_words import JointWords
+from robokin.cli.marking import undecided
+from robokin.cli.output.numbers import counted
 from robokin.cli.targets import Target
 from robokin.errors import InputError
-from robokin.grading.configurations import OUTSIDE, Reached, SetMark, countable, mark_set, reached, solutions_near
+from robokin.grading.configurations import (
+    Reached,
+    countable,
+    mark_set,
+    proven_none,
+    reached,
+    solutions_near,
+)
+from robokin.grading.distinct import firsts
+from robokin.grading.feedback import Words, alike, joined
+from robokin.grading.mistakes import loosened
 from robokin.grading.tolerance import Tolerance
 from robokin.inverse.analysis import Task
+from robokin.inverse.result import Result
 from robokin.model import Robot
 from robokin.spatial import nearest_rotation, rotation_error, transform
 from robokin.spatial.rotations import DIGITS_LOST
+from robokin.tables.poses import CLEAN
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -46,20 +60,44 @@ class Given:
 
 
 @dataclass(frozen=True, eq=False)
+class JointsTask:
+    """What one student answers to one question, unread: the rows of a file, or the texts of --q.
+
+    target: the question; None where the rows have it. known: its solutions, where they have been sought already.
+    """
+
+    id: str
+    target: Target | None
+    answers: tuple[Row | str, ...]
+    student: str | None = None
+    line: int | None = None
+    known: Result | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class InverseCheck:
-    """What configurations are marked against. `every`: all solutions are asked for; None: where several are given."""
+    """What configurations are marked against. `every`: all solutions are asked for; None: where several are given.
+
+    reader: reads the targets of a file whose lines say them.
+    """
 
     robot: Robot
     units: Units
     allowed: Tolerance
     limits: bool
     every: bool | None
+    reader: PoseReader | None = None
+
+    @property
+    def told(self) -> JointWords:
+        """The words of the marks."""
+        return JointWords(self.robot, self.units)
 
     # Reading ----------------------------------------------------------------------------------------------
 
     def option(self, text: str) -> Given:
         """The configuration of --q."""
-        if text.strip().lower() == NONE:
+        if self.says_none(text):
             return Given(None, claims_none=True)
         parts = split_vector(text)
         if not parts:
@@ -75,13 +113,24 @@ class InverseCheck:
             return Given(None, wrong)
         return Given(values * joint_factors(self.robot, self.units))
 
-    def row(self, row: Row) -> Given:
-        """The configuration of a line."""
-        names = [f"q{i}" for i in range(1, self.robot.n + 1)]
-        words = [row.cells[name] for name in names]
+    @property
+    def joint_columns(self) -> list[str]:
+        """The columns of the answered joint values."""
+        return [f"q{i}" for i in range(1, self.robot.n + 1)]
+
+    def says_none(self, row: Row | str) -> bool:
+        """Whether a line, or a text of --q, says that there is no solution."""
+        if isinstance(row, str):
+            return row.strip().lower() == NONE
+        words = [row.cells[name] for name in self.joint_columns]
         # `robokin ik -f csv` says with solution 0 that there is none.
         unsolved = row.cells.get("solution") == "0" and not any(words)
-        if not row.fault and (unsolved or (words[0].lower() == NONE and not any(words[1:]))):
+        return not row.fault and (unsolved or (words[0].lower() == NONE and not any(words[1:])))
+
+    def row(self, row: Row) -> Given:
+        """The configuration of a line."""
+        names = self.joint_columns
+        if self.says_none(row):
             return Given(None, claims_none=True, line=row.line)
         try:
             values = row.numbers(names, self.robot.revolute.tolist(), self.units)
@@ -91,33 +140,79 @@ class InverseCheck:
 
     # Marking ----------------------------------------------------------------------------------------------
 
-    def items(self, id: str, target: Target, given: list[Given], student: str | None = None) -> Iterator[Item]:
-        """The items of the answers to one question."""
+    def mark(self, task: JointsTask) -> list[Item]:
+        """The items of the answers to one question. Raises InputError for a text that cannot be read."""
+        target = task.target
+        if target is None:
+            first = task.answers[0]
+            assert isinstance(first, Row)
+            assert self.reader is not None
+            try:
+                target = target_of(self.reader.read(first))
+            except NoAnswerError as wrong:
+                return [self.unread(task, None, wrong)]
+        given = [self.row(answer) if isinstance(answer, Row) else self.option(answer) for answer in task.answers]
+        if not given:
+            return [self.unread(task, target, NoAnswerError(NOT_ANSWERED, "no line answers it"))]
         if any(answer.claims_none for answer in given):
-            yield self.claim(id, target, given, student)
-        elif self.every or (self.every is None and len(given) > 1):
-            yield self.set(id, target, given, student)
-        else:
-            for answer in given:
-                yield self.one(id, target, answer, student)
+            return [self.claim(task, target, given)]
+        if self.every or (self.every is None and len(given) > 1):
+            return [self.set(task, target, given)]
+        return self.each(task, target, given)
 
-    def one(self, id: str, target: Target, given: Given, student: str | None) -> Item:
+    def needs_all(self, answers: Sequence[Row | str]) -> bool:
+        """Whether answers are compared with all solutions."""
+        several = self.every is None and len(answers) > 1
+        return bool(answers) and bool(self.every or several or any(map(self.says_none, answers)))
+
+    def solutions(self, target: Target) -> Result:
+        """What there is to find for a question of the teacher's: sought once, whatever time it takes."""
+        return solutions_near(self.robot, target.T, self.allowed, task_of(target), self.limits)
+
+    def unread(self, task: JointsTask, target: Target | None, wrong: NoAnswerError) -> Item:
+        """The mark of what is no answer."""
+        expected = None if target is None else self.told.target(target)
+        words = Words(own=wrong.detail)
+        return Item(task.id, wrong.status, 0.0, expected, None, {"position": None}, words, task.student, task.line)
+
+    def each(self, task: JointsTask, target: Target, given: list[Given]) -> list[Item]:
+        """The marks of configurations by themselves; those that repeat one before do not count."""
+        read = [i for i, answer in enumerate(given) if answer.q is not None]
+        values = np.array([given[i].q for i in read]).reshape(len(read), self.robot.n)
+        same = firsts(self.robot, values, self.allowed) if len(read) > 1 else list(range(len(read)))
+        repeated = {i for k, i in enumerate(read) if same[k] != k}
+        # A blank beside other answers is one more wrong one, however many there are.
+        blanks = [i for i, answer in enumerate(given) if answer.q is None]
+        repeated.update(blanks[1:])
+        items = [self.one(task, target, answer) for answer in given]
+        return [
+            replace(item, counted=False, words=joined([item.words, Words(own=REPEATED)])) if i in repeated else item
+            for i, item in enumerate(items)
+        ]
+
+    def one(self, task: JointsTask, target: Target, given: Given) -> Item:
         """The mark of one configuration by itself."""
-        expected = self.target(target)
+        task = replace(task, line=given.line)
         if given.q is None:
-            status, detail = self.fault(given)
-            return Item(id, status, 0.0, expected, None, {"position": None}, detail, student, given.line)
-        mark = reached(self.robot, given.q, target.T, self.allowed, task_of(target), self.limits)
+            return self.unread(task, target, given.wrong or NoAnswerError(BLANK))
+        kind = task_of(target)
+        mark = reached(self.robot, given.q, target.T, self.allowed, kind, self.limits)
         score = HALVES.get(mark.status, 0.0) if target.task == "pose" else float(mark.right)
+        words, known = self.told.words(mark), None
+        if not mark.right:
+            known = joints_mistake(self.robot, given.q, target.T, kind, self.units, self.allowed, self.limits)
+            words = joined([alike(known.said), words]) if known is not None else words
         return Item(
-            id, mark.status, score, expected, self.joints(given.q), self.errors(mark, target.task),
-            self.detail(mark), student, given.line,
+            task.id, mark.status, score, self.told.target(target), self.told.joints(given.q),
+            self.told.errors(mark, target.task), words, task.student, task.line,
+            mistake=None if known is None else known.name,
         )  # fmt: skip
 
-    def set(self, id: str, target: Target, given: list[Given], student: str | None) -> Item:
+    def set(self, task: JointsTask, target: Target, given: list[Given]) -> Item:
         """The mark of configurations as the set of all solutions."""
         read = [answer.q for answer in given if answer.q is not None]
-        mark = mark_set(self.robot, read, target.T, self.allowed, task_of(target), self.limits)
+        kind = task_of(target)
+        mark = mark_set(self.robot, read, target.T, self.allowed, kind, self.limits, task.known)
         unread = len(given) - len(read)
         total = len(given) + len(mark.missing)
         right = sum(answer.right for answer in mark.answers)
@@ -131,10 +226,10 @@ class InverseCheck:
         more = {
             "complete": mark.counted,
             "answers": answers,
-            "missing": [self.joints(q) for q in mark.missing],
+            "missing": [self.told.joints(q) for q in mark.missing],
         }
-        expected = [self.joints(solution.q) for solution in mark.result.solutions]
-        got = [self.joints(q) for q in read]
+        expected = [self.told.joints(solution.q) for solution in mark.result.solutions]
+        got = [self.told.joints(q) for q in read]
         worst = [answer for answer in mark.answers if not answer.right]
         errors: dict[str, float | None] = {
             "position": max((answer.position for answer in worst or mark.answers), default=np.nan) / self.units.metres
@@ -143,111 +238,70 @@ class InverseCheck:
             errors["angle"] = (
                 max((answer.angle for answer in worst or mark.answers), default=np.nan) / self.units.radians
             )
-        detail = self.set_detail(mark, answers)
+        words, mistake = self.told.set_words(mark, answers), None
+        if not right and not unread and (meant := set_meant(self.robot, read, self.units)) is not None:
+            wide = loosened(self.allowed)
+            near = any(reached(self.robot, q, target.T, wide, kind, self.limits).right for q in read)
+            if (
+                not near
+                and mark_set(self.robot, meant[1], target.T, wide, kind, self.limits, mark.result).status == PASS
+            ):
+                mistake, words = meant[0].name, joined([alike(meant[0].said), words])
         score = right / total if total else 0.0
-        return Item(id, status, score, expected, got, errors, detail, student, given[0].line, more)
-
-    def claim(self, id: str, target: Target, given: list[Given], student: str | None) -> Item:
-        """The mark of an answer that says that there is no solution."""
-        expected = self.target(target)
-        line = given[0].line
-        if len(given) > 1:
-            detail = "says that there is no solution, and gives one"
-            return Item(id, "extra", 0.0, expected, NONE, {"position": None}, detail, student, line)
-        result = solutions_near(self.robot, target.T, self.allowed, task_of(target), self.limits)
-        status = EXISTS if result.reachable else PASS
-        count = len(result.solutions)
-        known = countable(result)
-        detail = (
-            f"there {'is' if count == 1 else 'are'} {counted(count, 'solution')}" if known else "there are solutions"
+        return Item(
+            task.id, status, score, expected, got, errors, words, task.student, given[0].line, more, mistake=mistake
         )
-        detail = detail if result.reachable else f"right: {result.reason}"
-        return Item(id, status, float(status == PASS), expected, NONE, {"position": None}, detail, student, line)
 
-    # Words ------------------------------------------------------------------------------------------------
-
-    def joints(self, q: Array) -> list[float]:
-        """Joint values in the units."""
-        values: list[float] = in_units(q, joint_factors(self.robot, self.units)).tolist()
-        return values
-
-    def target(self, target: Target) -> dict[str, Any]:
-        """The target as an item shows it."""
-        return {**pose_value(target.T, target.task, self.units), "task": target.task}
+    def claim(self, task: JointsTask, target: Target, given: list[Given]) -> Item:
+        """The mark of an answer that says that there is no solution: right where that is proven."""
+        expected = self.told.target(target)
+        line = given[0].line
+        if not all(answer.claims_none for answer in given):
+            words = alike("says that there is no solution, and gives one")
+            return Item(task.id, "extra", 0.0, expected, NONE, {"position": None}, words, task.student, line)
+        result = self.solutions(target) if task.known is None else task.known
+        count = len(result.solutions)
+        if result.solutions:
+            known = f"there {'is' if count == 1 else 'are'} {counted(count, 'solution')}"
+            status, words = EXISTS, Words(answer=known if countable(result) else "there are solutions")
+        elif proven_none(result):
+            status, words = PASS, alike(f"right: {result.reason}")
+        else:
+            status, words = NOT_DECIDED, undecided("no solution was found, and that there is none is not proven")
+        score = float(status == PASS)
+        return Item(task.id, status, score, expected, NONE, {"position": None}, words, task.student, line)
 
     def fault(self, given: Given) -> tuple[str, str]:
         """The status and the detail of an answer that is none."""
         return (given.wrong.status, given.wrong.detail) if given.wrong is not None else (BLANK, "")
 
-    def errors(self, mark: Reached, task: str) -> dict[str, float | None]:
-        """The errors in the units."""
-        errors: dict[str, float | None] = {"position": mark.position / self.units.metres}
-        return errors if task == "position" else errors | {"angle": mark.angle / self.units.radians}
-
     def answer(self, mark: Reached | None, given: Given) -> dict[str, Any]:
         """One answer of a set."""
         if mark is None:
             status, detail = self.fault(given)
-            return {"q": None, "status": status, "detail": detail}
-        detail = self.detail(mark)
-        return {"q": self.joints(mark.q), "status": mark.status, "detail": detail}
-
-    def detail(self, mark: Reached) -> str:
-        """What is wrong with a configuration."""
-        if mark.right:
-            return ""
-        if mark.status == OUTSIDE:
-            limits = self.robot.limits / joint_factors(self.robot, self.units)[:, None]
-            values = self.joints(mark.q)
-            return "; ".join(
-                f"q{i} {show(values[i - 1])}, expected {show(limits[i - 1, 0])} to {show(limits[i - 1, 1])}"
-                for i in mark.outside
-            )
-        if mark.status == "duplicate":
-            return "the same as another answer"
-        parts = [f"{show(mark.position / self.units.metres)} {self.units.length} from the target"]
-        if mark.status != "wrong position":
-            parts.append(f"turned by {show(mark.angle / self.units.radians)} {self.units.angle}")
-        return " and ".join(parts if mark.status != "wrong orientation" else parts[1:])
-
-    def set_detail(self, mark: SetMark, answers: list[dict[str, Any]]) -> str:
-        """What is wrong with a set."""
-        parts = [
-            f"answer {i}: {answer['status']}" + (f" ({answer['detail']})" if answer["detail"] else "")
-            for i, answer in enumerate(answers, start=1)
-            if answer["status"] != PASS
-        ]
-        if mark.missing:
-            shown = " and ".join(" ".join(map(show, self.joints(q))) for q in mark.missing[:2])
-            more = f" and {len(mark.missing) - 2} more" if len(mark.missing) > 2 else ""
-            parts.append(
-                f"{len(mark.missing)} of {counted(len(mark.result.solutions), 'solution')} missing: {shown}{more}"
-            )
-        elif not mark.counted and mark.result.reachable:
-            parts.append("there may be infinitely many solutions, so each answer is marked by itself")
-        return "; ".join(parts)
+            return {"q": None, "status": status, "detail": Words(own=detail)}
+        return {"q": self.told.joints(mark.q), "status": mark.status, "detail": self.told.words(mark)}
 
     # Files ------------------------------------------------------------------------------------------------
 
-    def file(self, source: str, key: str | None) -> Iterator[Item]:
-        """The items of a file of answers; lines of one question (id and target) are a set."""
-        sheet = read_sheet(source)
-        sheet.require([f"q{i}" for i in range(1, self.robot.n + 1)], "the answered joint values")
-        if key is not None:
-            targets = self.targets(read_sheet(key))
-            for student, id, rows in answers_by_question(sheet, list(targets)):
-                given = [self.row(row) for row in rows]
-                if rows:
-                    yield from self.items(id, targets[id], given, student)
-                else:
-                    missing = Given(None, NoAnswerError(NOT_ANSWERED, "no line answers it"))
-                    yield self.one(id, targets[id], missing, student)
-            return
-        yield from self.own_targets(sheet)
+    def file(self, sheet: Sheet, key: Sheet | None) -> list[JointsTask]:
+        """The answers of a file; lines of one student and question (id and target) are one."""
+        sheet.require(self.joint_columns, "the answered joint values")
+        if key is None:
+            return self.own_targets(sheet)
+        targets = self.targets(key)
+        known: dict[str, Result] = {}
+        tasks = []
+        for student, id, rows in answers_by_question(sheet, list(targets)):
+            target = targets[id]
+            if id not in known and self.needs_all(rows):
+                known[id] = self.solutions(target)
+            tasks.append(JointsTask(id, target, tuple(rows), student, rows[0].line if rows else None))
+        return [replace(task, known=known.get(task.id)) for task in tasks]
 
-    def own_targets(self, sheet: Sheet) -> Iterator[Item]:
-        """The items of a file whose lines say their targets themselves."""
-        reader = pose_reader(sheet, self.robot, self.units)
+    def own_targets(self, sheet: Sheet) -> list[JointsTask]:
+        """The answers of a file whose lines say their targets themselves."""
+        reader = self.reader
         if reader is None:
             raise InputError(
                 f"{sheet.name}: found no columns of a target, expected x, y, z, roll, pitch, yaw, or --key FILE"
@@ -259,14 +313,10 @@ class InverseCheck:
             # A line that cannot be read stands for itself.
             place = row.line if row.fault else 0
             groups.setdefault((who, row.cells[id] if id else "", reader.key(row), place), []).append(row)
-        for number, ((who, name, _, _), rows) in enumerate(groups.items(), start=1):
-            label = name or str(number)
-            try:
-                target = target_of(reader.read(rows[0]))
-            except NoAnswerError as wrong:
-                yield Item(label, wrong.status, 0.0, None, None, {"position": None}, wrong.detail, who, rows[0].line)
-                continue
-            yield from self.items(label, target, [self.row(row) for row in rows], who)
+        return [
+            JointsTask(name or str(number), None, tuple(rows), who, rows[0].line)
+            for number, ((who, name, _, _), rows) in enumerate(groups.items(), start=1)
+        ]
 
     def targets(self, sheet: Sheet) -> dict[str, Target]:
         """The target of each question of a key."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -11,6 +11,8 @@ import typer
 from robokin.cli import DONE, NO
 from robokin.cli.options import choose, output_format
 from robokin.errors import InputError, shown
+from robokin.grading.feedback import ANSWER, LEVELS, PART
+from robokin.grading.guarded import BUDGET
 
 if TYPE_CHECKING:
     from robokin.cli.checks import Report
@@ -42,7 +44,7 @@ GradescopeOption = Annotated[
 ]
 PointsOption = Annotated[
     str | None,
-    typer.Option("--points", metavar="P", help="With --gradescope: what all is worth.  [default: 1 an item]"),
+    typer.Option("--points", metavar="P", help="With --gradescope: total points.  [default: 1 an item]"),
 ]
 VisibilityOption = Annotated[
     str | None,
@@ -50,42 +52,74 @@ VisibilityOption = Annotated[
         "--visibility", metavar="WHO", help="With --gradescope: visible, hidden, after_due_date or after_published."
     ),
 ]
+BudgetOption = Annotated[
+    str | None,
+    typer.Option("--budget", metavar="SECONDS", help="Processor time for each answer.  [default: 10]"),
+]
+FeedbackOption = Annotated[
+    str | None,
+    typer.Option(
+        "--feedback",
+        metavar="LEVEL",
+        help="What is told: verdict, part (what is wrong), distance (how far), answer.  [default: answer; what "
+        "Gradescope's students read: part]",
+    ),
+]
+PartialOption = Annotated[
+    str | None,
+    typer.Option(
+        "--partial", metavar="SCORE", help="The least score of an answer with a known mistake, such as another unit."
+    ),
+]
+FollowOption = Annotated[bool, typer.Option("--follow", help="Read what symbolic links point to.")]
+
+
+@dataclass(frozen=True)
+class Rules:
+    """What holds for all marks: seconds for each answer, and the least score of an answer with a known mistake."""
+
+    budget: float = BUDGET
+    partial: float | None = None
 
 
 @dataclass(frozen=True)
 class Delivery:
-    """Where marks go and how: `kind` is the format."""
+    """Where marks go and how: `kind` is the format, `feedback` what they tell, if that is said."""
 
     kind: str
     output: str | None
     gradescope: str | None
     points: float | None
     visibility: str | None
+    feedback: str | None = None
+    rules: Rules = field(default_factory=Rules)
 
     def deliver(self, report: Report) -> int:
         """Write the marks; the status."""
         from robokin.cli.check_output import gradescope, written
         from robokin.cli.output.sink import sink
 
-        students = {item.student for item in report.items}
-        if self.gradescope is not None and len(students) > 1:
+        names = {item.student for item in report.items}
+        if self.gradescope is not None and len(names) > 1:
             raise InputError(
-                f"--gradescope: found the answers of {len(students)} students, expected those of one: "
+                f"--gradescope: found the answers of {len(names)} students, expected those of one: "
                 "an autograder marks one submission at a time"
             )
-        data = written(report, self.kind)
+        # A page beside results for students may end up before their eyes as well; data are for the teacher's scripts.
+        students = self.gradescope is not None and self.kind == "table"
+        data = written(report, self.kind, self.feedback or (PART if students else ANSWER))
         if self.gradescope is not None:
-            results = gradescope(report, self.points, self.visibility)
+            results = gradescope(report, self.points, self.visibility, self.feedback or PART)
             with sink(self.gradescope, "--gradescope") as stream:
                 stream.write(results)
         with sink(self.output) as stream:
             stream.write(data)
-        return DONE if report.passed == len(report.items) else NO
+        return DONE if report.right else NO
 
 
 def delivery(
     output: str | None, format: str | None, json: bool, gradescope: str | None, points: str | None,
-    visibility: str | None,
+    visibility: str | None, feedback: str | None = None, budget: str | None = None, partial: str | None = None,
 ) -> Delivery:  # fmt: skip
     """Where the options send the marks. Raises InputError before any work is done."""
     from robokin.cli.check_output import VISIBILITIES
@@ -97,7 +131,35 @@ def delivery(
             if value is not None:
                 raise InputError(f"{option} is about the results of an autograder, expected --gradescope FILE with it")
     worth = None if points is None else plain_number(points, "--points")
-    return Delivery(kind, output, gradescope, worth, choose(visibility, VISIBILITIES, "--visibility"))
+    told = choose(feedback, LEVELS, "--feedback")
+    who = choose(visibility, VISIBILITIES, "--visibility")
+    return Delivery(kind, output, gradescope, worth, who, told, Rules(_budget(budget), _partial(partial)))
+
+
+def _budget(text: str | None) -> float:
+    """The seconds of --budget. Raises InputError."""
+    if text is None:
+        return BUDGET
+    seconds = plain_number(text, "--budget")
+    if not LEAST_BUDGET <= seconds <= GREATEST_BUDGET:
+        raise InputError(
+            f"--budget: found {shown(text)}, expected seconds for each answer, {LEAST_BUDGET:g} to {GREATEST_BUDGET:g}"
+        )
+    return seconds
+
+
+def _partial(text: str | None) -> float | None:
+    """The score of --partial. Raises InputError."""
+    if text is None:
+        return None
+    score = plain_number(text, "--partial")
+    if score > 1.0:
+        raise InputError(f"--partial: found {shown(text)}, expected a score from 0 to 1")
+    return score
+
+
+LEAST_BUDGET, GREATEST_BUDGET = 0.01, 86400.0
+"""Seconds: a clock's ticks and a day."""
 
 
 def plain_number(text: str, option: str) -> float:

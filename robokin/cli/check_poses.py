@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from robokin.cli.arguments import split_vector
 from robokin.cli.check_rows import BLANK, NoAnswerError, Row, Sheet, number
 from robokin.cli.output.numbers import counted
-from robokin.cli.records import ORIENTATION_COLUMNS, pose_columns
 from robokin.cli.targets import parse_target
 from robokin.description.expressions import Scope
 from robokin.description.transforms import STEPS, evaluate_transform
@@ -22,12 +21,12 @@ from robokin.kinematics.structure import structure_of
 from robokin.model import Robot
 from robokin.spatial import (
     rotation_error,
-    rotation_from_euler,
     rotation_from_quaternion,
-    rotation_from_rpy,
     rpy_from_rotation,
     transform,
 )
+from robokin.tables.orientations import MATRIX, ORIENTATIONS, pose_columns
+from robokin.tables.poses import ORDER
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -45,10 +44,15 @@ CALL = re.compile(r"\s*([A-Za-z]+)\s*\(")
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """A pose (4, 4) [m], whose upper left part may be no exact rotation, and what of it counts: pose or position."""
+    """A pose (4, 4) [m], whose upper left part may be no exact rotation, and what of it counts: pose or position.
+
+    values: the numbers (k,) that it was read from, in the units, and `kind` what they are; none of an expression.
+    """
 
     T: Array
     task: str
+    values: Array | None = None
+    kind: str = "expression"
 
 
 @dataclass(frozen=True)
@@ -62,7 +66,8 @@ class PoseReader:
 
     def read(self, row: Row) -> Answer:
         """The pose of a row. Raises NoAnswerError."""
-        angles = [name in ("roll", "pitch", "yaw", "phi", "theta", "psi") for name in self.names]
+        turns = self.kind == "planar" or (self.kind in ORIENTATIONS and ORIENTATIONS[self.kind].angles)
+        angles = [turns and name not in ("x", "y", "z") for name in self.names]
         return pose_from(row.numbers(self.names, angles, self.units), self.kind, self.robot, self.units)
 
     def key(self, row: Row) -> tuple[str, ...]:
@@ -73,11 +78,12 @@ class PoseReader:
 def pose_reader(sheet: Sheet, robot: Robot, units: Units) -> PoseReader | None:
     """What reads the poses of a sheet; None where it has no columns of any."""
     have = set(sheet.columns)
-    for kind in ("matrix", "rpy", "quaternion", "euler"):
-        names = ORIENTATION_COLUMNS[kind] if kind == "matrix" else pose_columns(kind)
+    for kind in ORDER:
+        names = MATRIX if kind == "matrix" else pose_columns(kind)
         if have.issuperset(names):
             return PoseReader(kind, tuple(names), robot, units)
-    half = [name for kind in ("rpy", "quaternion", "euler", "matrix") for name in ORIENTATION_COLUMNS[kind]]
+    half = [name for kind in ("rpy", "quaternion", "euler", "rotvec") for name in ORIENTATIONS[kind].columns]
+    half += MATRIX
     planar = structure_of(robot).arm == "planar"
     found = [name for name in half if name in have and not (name == "phi" and planar)]
     if found:
@@ -93,6 +99,11 @@ def pose_reader(sheet: Sheet, robot: Robot, units: Units) -> PoseReader | None:
 
 def pose_from(values: Array, kind: str, robot: Robot, units: Units) -> Answer:
     """A pose from numbers in the units. Raises NoAnswerError for what is none."""
+    T, task = _pose_and_task(values, kind, robot, units)
+    return Answer(T, task, values, kind)
+
+
+def _pose_and_task(values: Array, kind: str, robot: Robot, units: Units) -> tuple[Array, str]:
     if kind == "planar":
         texts = [repr(float(value)) for value in values]
         options = {"--xy": ",".join(texts[:2]), "--phi": texts[2] if len(texts) > 2 else None}
@@ -100,7 +111,7 @@ def pose_from(values: Array, kind: str, robot: Robot, units: Units) -> Answer:
             target = parse_target(options, robot, units)
         except InputError as error:
             raise NoAnswerError(NO_ROTATION, str(error)) from None
-        return Answer(target.T, target.task)
+        return target.T, target.task
     if kind == "matrix":
         M = values.reshape(-1, 4)
         M = M if len(M) == 4 else np.vstack([M, [0.0, 0.0, 0.0, 1.0]])
@@ -108,17 +119,17 @@ def pose_from(values: Array, kind: str, robot: Robot, units: Units) -> Answer:
             raise NoAnswerError(
                 "not a pose", f"found the last row {' '.join(f'{v:g}' for v in M[3])}, expected 0 0 0 1"
             )
-        return Answer(transform(M[:3, :3], M[:3, 3] * units.metres), "pose")
+        return transform(M[:3, :3], M[:3, 3] * units.metres), "pose"
     p = values[:3] * units.metres
     if kind == "position":
-        return Answer(transform(np.eye(3), p), "position")
+        return transform(np.eye(3), p), "position"
     if kind == "quaternion":
         length = float(np.linalg.norm(values[3:]))
         if abs(length - 1.0) > QUATERNION_CUT:
             raise NoAnswerError(NO_ROTATION, f"found a quaternion of length {length:.6g}, expected 1")
-        return Answer(transform(rotation_from_quaternion(values[3:]), p), "pose")
-    R = (rotation_from_rpy if kind == "rpy" else rotation_from_euler)(values[3:] * units.radians)
-    return Answer(transform(R, p), "pose")
+        return transform(rotation_from_quaternion(values[3:]), p), "pose"
+    R = ORIENTATIONS[kind].rotation(values[3:] * units.radians)
+    return transform(R, p), "pose"
 
 
 def pose_argument(text: str, robot: Robot, units: Units) -> Answer:

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import csv
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.cli.lines import BYTE_ORDER_MARK, MAX_LINE, PLAIN
-from robokin.cli.output.numbers import counted
-from robokin.cli.rows import open_input
-from robokin.description.expressions import Scope, evaluate
-from robokin.errors import ExpressionError, InputError, did_you_mean
+from robokin.cli import say
+from robokin.cli.sheet_records import SheetReader
+from robokin.cli.submissions import OPEN_PLACES, open_plain_file
+from robokin.errors import ExpressionError, InputError, did_you_mean, shown
+from robokin.files import open_input
+from robokin.tables.cells import PLAIN, Decimals, decimals_of, number_in
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -26,10 +25,6 @@ STUDENTS = ("student", "name")
 """Columns that name who answered."""
 
 BLANK, NOT_A_NUMBER, BAD_LINE = "blank", "not a number", "bad line"
-
-LARGEST = 64 << 20
-"""Bytes of a file of answers; it is held as a whole, since answers to one question may stand anywhere in it."""
-
 
 GREATEST = 1e12
 """Numbers beyond this, in any unit, are no lengths and no joint values; their squares would not be finite."""
@@ -45,11 +40,17 @@ class NoAnswerError(Exception):
 
 @dataclass(frozen=True)
 class Row:
-    """A line of a file: its cells by their columns, its number, and what is wrong with the line as such, or ""."""
+    """A line of a file: its cells by their columns, its number, and what is wrong with the line as such, or "".
+
+    `decimals` tells how numbers are written in a file whose cells are not separated by commas; `doubtful` is a line
+    that may be part of another one's cell.
+    """
 
     cells: dict[str, str]
     line: int
     fault: str = ""
+    decimals: Decimals = Decimals.POINT
+    doubtful: bool = False
 
     def numbers(self, names: Sequence[str], angles: Sequence[bool], units: Units) -> Array:
         """The numbers in some columns, in the units. Raises NoAnswerError for cells that hold none."""
@@ -58,7 +59,9 @@ class Row:
         if not any(self.cells[name] for name in names):
             raise NoAnswerError(BLANK, f"line {self.line}: no answer")
         try:
-            return np.array([number(self.cells[n], a, units) for n, a in zip(names, angles, strict=True)])
+            return np.array(
+                [number(self.decimals.plain(self.cells[n]), a, units) for n, a in zip(names, angles, strict=True)]
+            )
         except NoAnswerError as wrong:
             raise NoAnswerError(wrong.status, f"line {self.line}: {wrong.detail}") from None
 
@@ -67,10 +70,8 @@ def number(cell: str, angle: bool, units: Units) -> float:
     """The number in a cell, in the units. Raises NoAnswerError."""
     if not cell.strip():
         raise NoAnswerError(BLANK, "found a blank, expected a number")
-    if PLAIN.fullmatch(cell) and math.isfinite(value := float(cell)):
-        return sized(value)
     try:
-        return sized(evaluate(cell, Scope(degrees=units.degrees), angle=angle).number)
+        return sized(number_in(cell, units, angle))
     except ExpressionError as error:
         raise NoAnswerError(NOT_A_NUMBER, str(error)) from None
 
@@ -98,60 +99,56 @@ class Sheet:
         """Raise InputError where a column is not there."""
         for name in names:
             if name not in self.columns:
-                found, hint = ", ".join(self.columns)[:200], did_you_mean(name, self.columns)
+                found, hint = shown(", ".join(self.columns), 200), did_you_mean(name, self.columns)
                 raise InputError(f"{self.name}: found the columns {found}, expected {name} as well: {what}{hint}")
 
 
-def read_sheet(source: str) -> Sheet:
-    """A CSV with a header. A line with another number of cells is kept with its fault.
+def read_key(source: str) -> Sheet:
+    """The questions: the teacher's own file, whatever kind of file it is. Raises InputError."""
+    with open_input(source, "a CSV of questions") as (stream, name):
+        return _sheet(SheetReader(stream, name, say))
 
-    Raises InputError for what is no text, has no header, or names a column twice.
+
+def read_sheet(source: str, *, follow: bool) -> Sheet:
+    """A CSV with a header, as RFC 4180 says. A line that is no row of it is kept with its fault.
+
+    follow: whether a symbolic link is. Raises InputError for what is no plain file and no text, has no header, or names
+    a column twice.
     """
-    with open_input(source) as (stream, name):
-        try:
-            data = stream.read(LARGEST + 1)
-        except OSError as error:
-            raise InputError(f"{name}: {error.strerror}, expected rows that can be read") from None
-    if len(data) > LARGEST:
-        raise InputError(f"{name}: found more than {LARGEST} bytes, expected the answers of a class")
-    try:
-        text = data.removeprefix(BYTE_ORDER_MARK).decode()
-    except UnicodeDecodeError as error:
-        place = data.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{name}, line {place}: found bytes that are no text, expected UTF-8") from None
+    if source == "-" or source.startswith(OPEN_PLACES):
+        with open_input(source, "a CSV of answers") as (stream, name):
+            return _sheet(SheetReader(stream, name, say))
+    with open_plain_file(source, follow) as stream:
+        return _sheet(SheetReader(stream, source, say))
+
+
+def _sheet(reader: SheetReader) -> Sheet:
+    name = reader.name
     columns: tuple[str, ...] | None = None
     rows = []
-    for place, line in enumerate(text.splitlines(), start=1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        fault, cells = "", []
-        try:
-            if len(line) > MAX_LINE:
-                raise csv.Error("a line that is too long")
-            cells = [cell.strip() for cell in next(csv.reader([line], strict=True, skipinitialspace=True))]
-        except csv.Error as error:
-            fault = f"{error}, expected cells with commas between them"
-        if columns is None:
-            columns = _header(cells, fault, f"{name}, line {place}")
-            continue
-        if not fault and len(cells) != len(columns):
-            fault = f"found {counted(len(cells), 'cell')}, expected {len(columns)} as in the header"
-        rows.append(Row(dict(zip(columns, cells + [""] * len(columns), strict=False)), place, fault))
+    try:
+        for cells, line, fault, doubtful in reader.rows():
+            if columns is None:
+                columns = _header(cells, f"{name}, line {line}")
+                continue
+            rows.append(
+                Row(dict(zip(columns, cells + [""] * len(columns), strict=False)), line, fault, doubtful=doubtful)
+            )
+    except OSError as error:
+        raise InputError(f"{name}: {error.strerror}, expected rows that can be read") from None
     if columns is None:
         raise InputError(f"{name}: found nothing, expected a header and answers")
     if not rows:
         raise InputError(f"{name}: found a header alone, expected answers below it")
+    decimals = decimals_of(reader.separator, (cell for row in rows for cell in row.cells.values()))
+    rows = [replace(row, decimals=decimals) for row in rows]
     return Sheet(name, columns, tuple(rows))
 
 
-def _header(cells: list[str], fault: str, place: str) -> tuple[str, ...]:
-    if fault:
-        raise InputError(f"{place}: {fault}")
-    if len(cells) == 1 and (";" in cells[0] or "\t" in cells[0]):
-        raise InputError(f"{place}: found no commas, expected a CSV with commas between the columns")
+def _header(cells: list[str], place: str) -> tuple[str, ...]:
     if any(PLAIN.fullmatch(cell) for cell in cells):
         raise InputError(f"{place}: found numbers, expected a header that names the columns")
     for cell in cells:
         if cells.count(cell) > 1:
-            raise InputError(f"{place}: found the column '{cell}' twice, expected it once")
+            raise InputError(f"{place}: found the column '{shown(cell)}' twice, expected it once")
     return tuple(cells)

@@ -14,9 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Brief
+from robokin.grading.distinct import apart, firsts
 from robokin.grading.poses import PASS, pose_errors, pose_status
 from robokin.grading.tolerance import Tolerance
 from robokin.inverse.analysis import Task
+from robokin.inverse.redundant import NOT_FOUND, UNPROVEN
 from robokin.inverse.result import Result
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import within_limits
@@ -34,8 +37,8 @@ NEIGHBOUR = 3.0
 tolerance more: what rounding can do where two solutions are close together."""
 
 
-@dataclass(frozen=True, eq=False)
-class Reached:
+@dataclass(frozen=True, eq=False, repr=False)
+class Reached(Brief):
     """How one configuration q (n,) [rad | m] does: its status, its errors [m, rad], the joints outside (from 1)."""
 
     q: Array
@@ -50,8 +53,8 @@ class Reached:
         return self.status == PASS
 
 
-@dataclass(frozen=True, eq=False)
-class SetMark:
+@dataclass(frozen=True, eq=False, repr=False)
+class SetMark(Brief):
     """How several configurations do as the set of all solutions.
 
     answers: one each, in order; missing: the solutions (n,) [rad | m] that none stands for; `counted` is false
@@ -93,6 +96,8 @@ def reached(robot: Robot, q: Array, T: Array, allowed: Tolerance, task: Task = "
 
 def joints_outside(robot: Robot, q: Array) -> tuple[int, ...]:
     """The joints (from 1) whose value is outside the limits, also when it is turned by multiples of 360°."""
+    if within_limits(q[None], robot.revolute, robot.limits, q)[1][0]:
+        return ()
     each = [
         within_limits(q[None, i : i + 1], robot.revolute[i : i + 1], robot.limits[i : i + 1], q[i : i + 1])[1][0]
         for i in range(robot.n)
@@ -122,45 +127,40 @@ def countable(result: Result) -> bool:
     return (result.complete and not result.families) or result.postures
 
 
+def proven_none(result: Result) -> bool:
+    """Whether it is proven that a target has no solution: a search that found none proves nothing."""
+    return not result.solutions and result.reason not in (None, NOT_FOUND, UNPROVEN)
+
+
 def mark_set(
-    robot: Robot, configurations: list[Array], T: Array, allowed: Tolerance, task: Task = "pose", limits: bool = True
-) -> SetMark:
-    """How configurations (n,) [rad | m] do as the set of all solutions for a target T (4, 4) [m]."""
+    robot: Robot, configurations: list[Array], T: Array, allowed: Tolerance, task: Task = "pose", limits: bool = True,
+    known: Result | None = None,
+) -> SetMark:  # fmt: skip
+    """How configurations (n,) [rad | m] do as the set of all solutions for a target T (4, 4) [m].
+
+    known: what there is to find, if that has been sought before.
+    """
     answers = [reached(robot, q, T, allowed, task, limits) for q in configurations]
-    result = solutions_near(robot, T, allowed, task, limits)
+    result = solutions_near(robot, T, allowed, task, limits) if known is None else known
     counted = countable(result)
     right = [i for i, answer in enumerate(answers) if answer.right]
+    if not right:
+        missing = tuple(s.q for s in result.solutions) if counted else ()
+        return SetMark(tuple(answers), missing, counted, result)
+    given = np.array([answers[i].q for i in right])
     if not counted:
-        stand = _first_of_equals([answers[i].q for i in right], robot, allowed)
-        for i, new in zip(right, stand, strict=True):
-            if not new:
-                answers[i] = replace(answers[i], status=DUPLICATE)
+        for place, first in enumerate(firsts(robot, given, allowed)):
+            if first != place:
+                answers[right[place]] = replace(answers[right[place]], status=DUPLICATE)
         return SetMark(tuple(answers), (), False, result)
-    free = {joint - 1 for solution in result.solutions for joint in solution.free}
-    far = np.array([[_apart(robot, answers[i].q, s.q, allowed, free) for s in result.solutions] for i in right])
-    chosen = _matching(far.reshape(len(right), len(result.solutions)), 4.0 * allowed.angle)
+    free = frozenset(joint - 1 for solution in result.solutions for joint in solution.free)
+    far = np.array([apart(robot, s.q, given, allowed, free) for s in result.solutions]).reshape(-1, len(right)).T
+    chosen = _matching(far, 4.0 * allowed.angle)
     for i, k in zip(right, chosen, strict=True):
         if k is None and result.solutions:
             answers[i] = replace(answers[i], status=DUPLICATE)
     missing = tuple(s.q for k, s in enumerate(result.solutions) if k not in chosen)
     return SetMark(tuple(answers), missing, True, result)
-
-
-def _apart(robot: Robot, q: Array, other: Array, allowed: Tolerance, free: set[int]) -> float:
-    """The greatest difference of two configurations [rad], angles modulo 360°, lengths in the arm's size."""
-    gap = np.abs(q - other)
-    turns = np.abs((q - other + np.pi) % (2.0 * np.pi) - np.pi)
-    each = np.where(robot.revolute, turns, gap / allowed.size)
-    return float(max((value for i, value in enumerate(each.tolist()) if i not in free), default=0.0))
-
-
-def _first_of_equals(configurations: list[Array], robot: Robot, allowed: Tolerance) -> list[bool]:
-    """Which configurations are not the same as one before."""
-    near = max(allowed.angle, allowed.position / allowed.size)
-    return [
-        all(_apart(robot, q, other, allowed, set()) > near for other in configurations[:i])
-        for i, q in enumerate(configurations)
-    ]
 
 
 def _matching(far: NDArray[np.float64], more: float) -> list[int | None]:

@@ -24,6 +24,7 @@ from itertools import chain, combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Brief
 from robokin.grading.freedom import EVERYTHING, NOTHING, Axis, Freedom, Near, across
 from robokin.grading.gaps import Gap, gap_of
 from robokin.grading.poses import pose_errors
@@ -49,8 +50,8 @@ SAME_LINE = 1e-3
 """Metres, and sines: a turn about a joint's axis is off it by no more. It only decides how a match is told."""
 
 
-@dataclass(frozen=True, eq=False)
-class Skeleton:
+@dataclass(frozen=True, eq=False, repr=False)
+class Skeleton(Brief):
     """The axes of a robot at q = 0 in the world, and its tool there (4, 4) [m]."""
 
     axes: tuple[Axis, ...]
@@ -73,8 +74,8 @@ def skeleton_of(robot: Robot) -> Skeleton:
     return Skeleton(tuple(Axis(u, o, turning) for u, o, turning in axes), frames[-1])
 
 
-@dataclass(frozen=True, eq=False)
-class State:
+@dataclass(frozen=True, eq=False, repr=False)
+class State(Brief):
     """How b has been moved: a motion (4, 4) for each joint so far, its senses, and what is still free."""
 
     motions: tuple[Array, ...]
@@ -83,8 +84,8 @@ class State:
     worst: float = 0.0
 
 
-@dataclass(frozen=True, eq=False)
-class Match:
+@dataclass(frozen=True, eq=False, repr=False)
+class Match(Brief):
     """How far b could be brought to a: the joint (from 0) that differs, or n for the tool, or None; and its gap.
 
     state: of all joints before.
@@ -198,8 +199,8 @@ def _different(states: list[State], near: Near) -> list[State]:
     return kept
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Brief):
     """The verdict on a table.
 
     same: with what was left open; `needs` is the least that must be left open for it to be the same robot, or None if
@@ -223,9 +224,12 @@ def compare_tables(right: Robot, given: Robot, allowed: Tolerance, free: frozens
     a, b = skeleton_of(right), skeleton_of(given)
     if a.types != b.types:
         return Comparison(False, None, None, (), 0.0)
-    # What is open already costs nothing; of the rest the least.
-    subsets = sorted(_subsets(OPEN), key=lambda names: (len({*names} - free), len(names)))
-    needs = next((names for names in subsets if match(a, b, allowed, frozenset(names)).same), None)
+    # What is open already costs nothing; of the rest the least, unless the two differ with everything open: then they
+    # do whatever is open, as most wrong tables do.
+    own, more = _subsets(tuple(name for name in OPEN if name in free)), _subsets(OPEN)
+    needs = _least(own, a, b, allowed)
+    if needs is None and match(a, b, allowed, frozenset(OPEN)).same:
+        needs = _least(sorted(more, key=lambda names: (len({*names} - free), len(names))), a, b, allowed)
     if needs is not None and free.issuperset(needs):
         return Comparison(True, needs, match(a, b, allowed, frozenset(needs)), (), 1.0)
     # Another robot is compared with its zeros and senses as they fit best: what is left is in the lengths and twists.
@@ -234,15 +238,25 @@ def compare_tables(right: Robot, given: Robot, allowed: Tolerance, free: frozens
     start = 0
     while (found := match(a.end(start), b.end(start), allowed, wanted)).joint is not None:
         joint = start + found.joint
-        differences.append(Match(joint, found.gap, found.state, a, b))
+        if not differences or differences[-1].joint != joint:
+            differences.append(Match(joint, found.gap, found.state, a, b))
         if joint == len(a.axes):
             break
-        # It goes on from the joint that differs, as if that were the first one on an open base, which fits.
-        start, wanted = joint, wanted | {"base"}
+        # It goes on from the joint that differs, as if that were the first one on an open base, which fits; where it
+        # does not, for numbers whose rounding is more than is allowed, from the next one.
+        start = joint + (found.joint == 0 and "base" in wanted)
+        wanted = wanted | {"base"}
     parts = len(a.axes) + ("tool" not in free)
     score = max(0.0, 1.0 - len(differences) / max(parts, 1))
     best = match(a, b, allowed, frozenset(OPEN if needs is None else needs))
     return Comparison(False, needs, best, tuple(differences), score)
+
+
+def _least(
+    choices: list[tuple[str, ...]], right: Skeleton, given: Skeleton, allowed: Tolerance
+) -> tuple[str, ...] | None:
+    """The first of some choices of what is left open with which a skeleton is the right one."""
+    return next((names for names in choices if match(right, given, allowed, frozenset(names)).same), None)
 
 
 def _subsets(names: tuple[str, ...]) -> list[tuple[str, ...]]:

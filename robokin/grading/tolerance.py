@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from robokin.errors import InputError
+from robokin.expected import expect_flag, expect_number
 from robokin.kinematics.chain import chain_of, chain_size
-from robokin.model import Robot
+from robokin.model import Robot, expect_robot
 
 ANSWER_PART = 1e-3
 """Part of the arm's size by which an answered position may be off unless it is said otherwise: what rounding of
@@ -40,6 +42,13 @@ class Tolerance:
     relative: float = 0.0
     size: float = 1.0
 
+    def __post_init__(self) -> None:
+        """Refuse what is no tolerance. Raises InputError."""
+        for name in ("position", "angle", "relative", "size"):
+            value = expect_number(getattr(self, name), name, "a finite number of 0 or more")
+            if value < 0.0:
+                raise InputError(f"{name}: found {value:g}, expected a finite number of 0 or more")
+
     def allows_position(self, error: float, right: float = 0.0) -> bool:
         """Whether a length may be off by the error [m], the right one being of the size `right` [m]."""
         return error <= (self.position + self.relative * abs(right)) * (1.0 + ROUNDING) + DUST * self.size
@@ -55,6 +64,7 @@ def default_tolerance(robot: Robot, *, table: bool = False) -> Tolerance:
     The length is the greatest of 1, 2 or 5 times a power of ten, in the description's own unit, that is no more
     than its part of the arm's size: a number that can be said, and the same whatever units are asked for.
     """
+    robot, table = expect_robot(robot), expect_flag(table, "table")
     size = chain_size(chain_of(robot))
     part = (TABLE_PART if table else ANSWER_PART) * size / robot.units.metres
     power = 10.0 ** math.floor(math.log10(part))

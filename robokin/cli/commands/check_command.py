@@ -10,7 +10,7 @@ from typer.core import TyperGroup
 from robokin.errors import InputError, did_you_mean, or_list, shown
 
 CHECKS = {
-    "fk": "A pose for joint values: where is the hand?",
+    "fk": "A pose for joint values.",
     "ik": "Joint values for a pose: one answer, or all solutions.",
     "dh": "Tables: is it the same robot, and where does it differ?",
     "jacobian": "A 6×n matrix, entry by entry.",
@@ -21,6 +21,9 @@ CHECKS = {
 SHARED = (
     ("--tol L, --tol-angle A", "How far positions and angles may be off; the output says it."),
     ("-i, --input FILE", "fk, ik: a CSV with many answers, of one student or of a class."),
+    ("--budget SECONDS", "Processor time for each answer, after which it is not decided."),
+    ("--partial SCORE", "The least score of an answer with a known mistake, such as another unit."),
+    ("--feedback LEVEL", "What is told: verdict, part, distance, answer."),
     ("--gradescope FILE", "Also write the results.json that Gradescope reads."),
     ("-o, --output FILE", "Write to a file, by its ending: .csv, .jsonl or .json."),
     ("-f, --format FORMAT", "table, json, jsonl or csv.  [default: table]"),
@@ -65,7 +68,12 @@ class CheckGroup(TyperGroup):
         if cmd_name in CHECKS:
             from robokin.cli.app import build
 
-            return build(cmd_name, import_module(f"robokin.cli.commands.check_{cmd_name}").command)
+            module = import_module(f"robokin.cli.commands.check_{cmd_name}")
+            command = build(cmd_name, module.command)
+            if hasattr(module, "arguments"):
+                parse = command.parse_args
+                command.parse_args = lambda context, words: parse(context, module.arguments(words))
+            return command
         if ctx.resilient_parsing or cmd_name.startswith("-"):
             return None
         hint = did_you_mean(cmd_name, CHECKS) or f", expected {or_list(CHECKS)}"

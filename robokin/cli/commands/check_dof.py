@@ -6,14 +6,20 @@ from typing import Annotated, Any
 
 import typer
 
-from robokin.cli.check_options import GradescopeOption, PointsOption, VisibilityOption, delivery
+from robokin.cli.check_options import (
+    FeedbackOption,
+    GradescopeOption,
+    PointsOption,
+    VisibilityOption,
+    delivery,
+)
+from robokin.cli.completion import robots, words
 from robokin.cli.options import (
     FormatOption,
     JsonOption,
     OutputOption,
     SetOption,
     choose,
-    complete_names,
     parameter_overrides,
 )
 from robokin.errors import InputError, shown
@@ -27,7 +33,7 @@ def command(
         typer.Argument(
             metavar="[NAME]",
             help="A mechanism or a robot: of `robokin list`, or a path to a description.",
-            autocompletion=complete_names,
+            autocompletion=robots,
             show_default=False,
         ),
     ] = None,
@@ -43,8 +49,15 @@ def command(
         typer.Option("--joints", metavar="JOINTS", help="With --links: joints by type, such as 6R or 12S,6P."),
     ] = None,
     space: Annotated[
-        str | None, typer.Option("--space", metavar="SPACE", help="With --links: planar, spherical or spatial.")
+        str | None,
+        typer.Option(
+            "--space",
+            metavar="SPACE",
+            help="With --links: planar, spherical or spatial.",
+            autocompletion=words(*SPACES),
+        ),
     ] = None,
+    feedback: FeedbackOption = None,
     gradescope: GradescopeOption = None,
     points: PointsOption = None,
     visibility: VisibilityOption = None,
@@ -63,7 +76,7 @@ def command(
     from robokin.cli.check_dof import count_item
     from robokin.cli.checks import Report
 
-    way = delivery(output, format, json, gradescope, points, visibility)
+    way = delivery(output, format, json, gradescope, points, visibility, feedback)
     if expect is None and mobility is None:
         raise InputError("--expect is missing, expected --expect N for the count or --mobility N for the true mobility")
     bare = {"--links": links, "--joints": joints, "--space": space}
@@ -100,12 +113,12 @@ def _counted(links: str | None, joints: str | None, space: str | None) -> dict[s
 
 def _described(name: str, set_: list[str] | None) -> dict[str, Any]:
     """The count and the mobility of what a description describes."""
+    from robokin.cli.arguments import load_entry
     from robokin.cli.mobilities import mechanism_record, robot_record
-    from robokin.description.library import load_any
     from robokin.mobility.verdict import mobility_of
     from robokin.model import Mechanism, Robot
 
-    entry = load_any(name, parameter_overrides(set_))
+    entry = load_entry(name, parameter_overrides(set_))
     if isinstance(entry, Mechanism):
         return mechanism_record(mobility_of(entry), entry.units, 0)
     if isinstance(entry, Robot):

@@ -7,9 +7,13 @@ from typing import Annotated
 import typer
 
 from robokin.cli.check_options import (
+    BudgetOption,
+    FeedbackOption,
+    FollowOption,
     GradescopeOption,
     InputAnswersOption,
     KeyOption,
+    PartialOption,
     PointsOption,
     RtolOption,
     TolAngleOption,
@@ -19,6 +23,7 @@ from robokin.cli.check_options import (
     one_source,
     stated_tolerance,
 )
+from robokin.cli.completion import named_poses
 from robokin.cli.options import (
     AngleOption,
     FormatOption,
@@ -36,7 +41,12 @@ def command(
     robot: RobotArgument,
     q: Annotated[
         list[str] | None,
-        typer.Option("--q", metavar="Q", help="The joint values of the question, or a named pose; repeatable."),
+        typer.Option(
+            "--q",
+            metavar="Q",
+            help="The joint values of the question, or a named pose; repeatable.",
+            autocompletion=named_poses,
+        ),
     ] = None,
     expect: Annotated[
         list[str] | None,
@@ -48,9 +58,13 @@ def command(
     ] = None,
     input: InputAnswersOption = None,
     key: KeyOption = None,
+    follow: FollowOption = False,
     tol: TolOption = None,
     tol_angle: TolAngleOption = None,
     rtol: RtolOption = None,
+    budget: BudgetOption = None,
+    partial: PartialOption = None,
+    feedback: FeedbackOption = None,
     gradescope: GradescopeOption = None,
     points: PointsOption = None,
     visibility: VisibilityOption = None,
@@ -74,13 +88,17 @@ def command(
         robokin check fk planar2r --q 90,0 --expect "Trans(0,1.6,0)Rot(z,90)" --json
         robokin fk puma560 -i joints.csv -f csv | robokin check fk puma560 -i -
     """
+    from dataclasses import replace
+
     from robokin.cli.arguments import load_robot
-    from robokin.cli.check_fk import ForwardCheck
+    from robokin.cli.check_fk import ForwardCheck, needed_reader, without_repetitions
+    from robokin.cli.check_rows import read_key, read_sheet
     from robokin.cli.checks import Report, tolerance_record
+    from robokin.cli.marking import marked
     from robokin.errors import InputError
     from robokin.grading.tolerance import default_tolerance
 
-    way = delivery(output, format, json, gradescope, points, visibility)
+    way = delivery(output, format, json, gradescope, points, visibility, feedback, budget, partial)
     one_source({"--q": q, "--expect": expect}, input, key)
     model = load_robot(robot, parameter_overrides(set_))
     if not model.n:
@@ -89,10 +107,15 @@ def command(
     allowed = stated_tolerance(default_tolerance(model), tol, tol_angle, rtol, units)
     check = ForwardCheck(model, units, allowed)
     if input is not None:
-        items = tuple(check.file(input, key))
+        sheet = read_sheet(input, follow=follow)
+        check = replace(check, reader=needed_reader(sheet, model, units))
+        tasks = check.file(sheet, None if key is None else read_key(key))
     elif not q or not expect:
         missing = "--expect" if q else "--q"
         raise InputError(f"{missing} is missing, expected --q and --expect, or --input FILE")
     else:
-        items = tuple(check.options(q, expect))
-    return way.deliver(Report("fk", model.id or robot, units, tolerance_record(allowed, units), items))
+        tasks = list(check.options(q, expect))
+    items = marked(check.mark, tasks, way.rules, {"q": None, "compared": None})
+    if input is not None and key is None:
+        items = without_repetitions(items)
+    return way.deliver(Report("fk", model.id or robot, units, tolerance_record(allowed, units), tuple(items)))

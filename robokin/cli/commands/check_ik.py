@@ -7,9 +7,13 @@ from typing import Annotated
 import typer
 
 from robokin.cli.check_options import (
+    BudgetOption,
+    FeedbackOption,
+    FollowOption,
     GradescopeOption,
     InputAnswersOption,
     KeyOption,
+    PartialOption,
     PointsOption,
     RtolOption,
     TolAngleOption,
@@ -19,6 +23,7 @@ from robokin.cli.check_options import (
     one_source,
     stated_tolerance,
 )
+from robokin.cli.completion import named_poses
 from robokin.cli.options import (
     AngleOption,
     FormatOption,
@@ -30,36 +35,40 @@ from robokin.cli.options import (
     effective_units,
     parameter_overrides,
 )
+from robokin.cli.target_options import (
+    ApproachOption,
+    EulerOption,
+    MatrixOption,
+    PhiOption,
+    PoseOption,
+    QuatOption,
+    RpyOption,
+    XyOption,
+    XyzOption,
+    target_texts,
+)
 
 
 def command(
     robot: RobotArgument,
     q: Annotated[
         list[str] | None,
-        typer.Option("--q", metavar="Q", help="The answer, or `none`; several are marked as the set of all solutions."),
+        typer.Option(
+            "--q",
+            metavar="Q",
+            help="The answer, or `none`; several are marked as the set of all solutions.",
+            autocompletion=named_poses,
+        ),
     ] = None,
-    pose: Annotated[
-        str | None, typer.Option("--pose", metavar="EXPR", help="The target as a transform expression.")
-    ] = None,
-    matrix: Annotated[
-        str | None,
-        typer.Option("--matrix", metavar="[[..]]|FILE", help="The target as a 4×4 matrix, or a file of one."),
-    ] = None,
-    xyz: Annotated[
-        str | None, typer.Option("--xyz", metavar="X,Y,Z", help="The target's position; alone: any orientation.")
-    ] = None,
-    rpy: Annotated[str | None, typer.Option("--rpy", metavar="R,P,Y", help="With --xyz: roll, pitch, yaw.")] = None,
-    euler: Annotated[
-        str | None, typer.Option("--euler", metavar="PHI,THETA,PSI", help="With --xyz: ZYZ Euler angles.")
-    ] = None,
-    quat: Annotated[
-        str | None, typer.Option("--quat", metavar="W,X,Y,Z", help="With --xyz: a quaternion of length 1.")
-    ] = None,
-    approach: Annotated[
-        str | None, typer.Option("--approach", metavar="X,Y,Z", help="With --xyz: the tool's z axis only, any roll.")
-    ] = None,
-    xy: Annotated[str | None, typer.Option("--xy", metavar="X,Y", help="The position for a planar arm.")] = None,
-    phi: Annotated[str | None, typer.Option("--phi", metavar="PHI", help="With --xy: the hand's angle.")] = None,
+    pose: PoseOption = None,
+    matrix: MatrixOption = None,
+    xyz: XyzOption = None,
+    rpy: RpyOption = None,
+    euler: EulerOption = None,
+    quat: QuatOption = None,
+    approach: ApproachOption = None,
+    xy: XyOption = None,
+    phi: PhiOption = None,
     every: Annotated[
         bool, typer.Option("--all", help="All solutions are asked for, also of a question with one answer.")
     ] = False,
@@ -67,9 +76,13 @@ def command(
     no_limits: Annotated[bool, typer.Option("--no-limits", help="The joint limits do not matter.")] = False,
     input: InputAnswersOption = None,
     key: KeyOption = None,
+    follow: FollowOption = False,
     tol: TolOption = None,
     tol_angle: TolAngleOption = None,
     rtol: RtolOption = None,
+    budget: BudgetOption = None,
+    partial: PartialOption = None,
+    feedback: FeedbackOption = None,
     gradescope: GradescopeOption = None,
     points: PointsOption = None,
     visibility: VisibilityOption = None,
@@ -94,19 +107,21 @@ def command(
         robokin check ik puma560 --xyz=-149.09,921.12,20.32 --rpy 0,90,90 --q home
         robokin check ik planar2r --xy 5,0 --q none
     """
+    from dataclasses import replace
+
     from robokin.cli import say
     from robokin.cli.arguments import load_robot
-    from robokin.cli.check_ik import InverseCheck
+    from robokin.cli.check_ik import InverseCheck, JointsTask
+    from robokin.cli.check_poses import pose_reader
+    from robokin.cli.check_rows import read_key, read_sheet
     from robokin.cli.checks import Report, tolerance_record
+    from robokin.cli.marking import marked
     from robokin.cli.targets import parse_target
     from robokin.errors import InputError
     from robokin.grading.tolerance import default_tolerance
 
-    way = delivery(output, format, json, gradescope, points, visibility)
-    targets = {
-        "--pose": pose, "--matrix": matrix, "--xyz": xyz, "--rpy": rpy, "--euler": euler, "--quat": quat,
-        "--approach": approach, "--xy": xy, "--phi": phi,
-    }  # fmt: skip
+    way = delivery(output, format, json, gradescope, points, visibility, feedback, budget, partial)
+    targets = target_texts(pose, matrix, xyz, rpy, euler, quat, approach, xy, phi)
     one_source({**targets, "--q": q}, input, key)
     if every and any_:
         raise InputError("--all and --any exclude each other, expected one of them")
@@ -117,12 +132,17 @@ def command(
     allowed = stated_tolerance(default_tolerance(model), tol, tol_angle, rtol, units)
     check = InverseCheck(model, units, allowed, not no_limits, True if every else False if any_ else None)
     if input is not None:
-        items = tuple(check.file(input, key))
+        sheet = read_sheet(input, follow=follow)
+        if key is None:
+            check = replace(check, reader=pose_reader(sheet, model, units))
+        tasks = check.file(sheet, None if key is None else read_key(key))
     else:
         target = parse_target(targets, model, units)
         if not q:
             raise InputError("--q is missing, expected the joint values that were answered, or --input FILE")
         for note in target.notes:
             say(note)
-        items = tuple(check.items("1", target, [check.option(text) for text in q]))
+        known = check.solutions(target) if check.needs_all(q) else None
+        tasks = [JointsTask("1", target, tuple(q), known=known)]
+    items = tuple(marked(check.mark, tasks, way.rules))
     return way.deliver(Report("ik", model.id or robot, units, tolerance_record(allowed, units), items))
