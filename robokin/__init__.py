@@ -9,15 +9,26 @@ SI units and radians, arrays in and out, any leading batch shape.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+TYPE_CHECKING = False  # `typing` has the same, and takes a while to load
 if TYPE_CHECKING:
+    from robokin import documents as documents
+    from robokin import notebook as notebook
     from robokin.description import load as load
     from robokin.description import load_mechanism as load_mechanism
     from robokin.description import load_wheeled as load_wheeled
+    from robokin.description.library import library_names as library_names
+    from robokin.description.pose_expressions import transform as transform
+    from robokin.drawings import draw as draw
     from robokin.errors import DescriptionError as DescriptionError
     from robokin.errors import InputError as InputError
+    from robokin.errors import InputTypeError as InputTypeError
     from robokin.errors import RobokinError as RobokinError
+    from robokin.grading.marks import check_configuration as check_configuration
+    from robokin.grading.marks import check_pose as check_pose
+    from robokin.grading.marks import check_solutions as check_solutions
+    from robokin.grading.marks import check_table as check_table
+    from robokin.grading.tolerance import Tolerance as Tolerance
+    from robokin.grading.tolerance import default_tolerance as default_tolerance
     from robokin.inverse.path import follow_line as follow_line
     from robokin.inverse.path import interpolate_joints as interpolate_joints
     from robokin.inverse.solve import solve_ik as solve_ik
@@ -31,12 +42,28 @@ if TYPE_CHECKING:
     from robokin.model import Mechanism as Mechanism
     from robokin.model import Robot as Robot
     from robokin.model import WheeledBase as WheeledBase
+    from robokin.spatial.conversions import axis_angle_from_rotation as axis_angle_from_rotation
+    from robokin.spatial.conversions import euler_from_rotation as euler_from_rotation
+    from robokin.spatial.conversions import quaternion_from_rotation as quaternion_from_rotation
+    from robokin.spatial.conversions import rotation_from_axis_angle as rotation_from_axis_angle
+    from robokin.spatial.conversions import rotation_from_euler as rotation_from_euler
+    from robokin.spatial.conversions import rotation_from_quaternion as rotation_from_quaternion
+    from robokin.spatial.conversions import rotation_from_rotvec as rotation_from_rotvec
+    from robokin.spatial.conversions import rotation_from_rpy as rotation_from_rpy
+    from robokin.spatial.conversions import rotvec_from_rotation as rotvec_from_rotation
+    from robokin.spatial.conversions import rpy_from_rotation as rpy_from_rotation
+    from robokin.symbol_matrices import symbols as symbols
+    from robokin.units import Units as Units
     from robokin.workspace.analyse import analyse_workspace as analyse_workspace
 
 __version__ = "0.1.0"
 
+_MODULES = ("documents", "notebook")
+"""Public modules, which are imported when they are first used, too."""
+
 # Names are imported when they are first used, so that the command line starts without numpy.
 _HOMES = {
+    "Units": "robokin.units",
     "load": "robokin.description",
     "load_mechanism": "robokin.description",
     "load_wheeled": "robokin.description",
@@ -57,18 +84,42 @@ _HOMES = {
     "Robot": "robokin.model",
     "analyse_workspace": "robokin.workspace.analyse",
     "WheeledBase": "robokin.model",
+    "draw": "robokin.drawings",
+    "symbols": "robokin.symbol_matrices",
+    "transform": "robokin.description.pose_expressions",
+    "Tolerance": "robokin.grading.tolerance",
+    "default_tolerance": "robokin.grading.tolerance",
+    "check_pose": "robokin.grading.marks",
+    "check_configuration": "robokin.grading.marks",
+    "check_solutions": "robokin.grading.marks",
+    "check_table": "robokin.grading.marks",
+    "InputTypeError": "robokin.errors",
+    "library_names": "robokin.description.library",
+    "rotation_from_rpy": "robokin.spatial.conversions",
+    "rpy_from_rotation": "robokin.spatial.conversions",
+    "rotation_from_euler": "robokin.spatial.conversions",
+    "euler_from_rotation": "robokin.spatial.conversions",
+    "rotation_from_quaternion": "robokin.spatial.conversions",
+    "quaternion_from_rotation": "robokin.spatial.conversions",
+    "rotation_from_axis_angle": "robokin.spatial.conversions",
+    "axis_angle_from_rotation": "robokin.spatial.conversions",
+    "rotation_from_rotvec": "robokin.spatial.conversions",
+    "rotvec_from_rotation": "robokin.spatial.conversions",
 }
 
-__all__ = ["__version__", *_HOMES]
+__all__ = ["__version__", *_HOMES, *_MODULES]
 
 
 def __getattr__(name: str) -> object:
     """Import a public name on first use."""
-    if name not in _HOMES:
-        raise AttributeError(f"module 'robokin' has no attribute {name!r}")
     from importlib import import_module
 
-    value = getattr(import_module(_HOMES[name]), name)
+    if name in _MODULES:
+        value: object = import_module(f"robokin.{name}")
+    elif name in _HOMES:
+        value = getattr(import_module(_HOMES[name]), name)
+    else:
+        raise AttributeError(f"module 'robokin' has no attribute {name!r}")
     globals()[name] = value
     return value
 

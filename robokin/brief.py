@@ -1,0 +1,64 @@
+"""How values show themselves: a line in a console, a table in a notebook, the shell's document as plain data."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from robokin.units import Units
+
+MOST_NUMBERS = 8
+"""Numbers of an array that are shown; of a longer one the shape."""
+
+MOST_CHARACTERS = 400
+"""Characters of a value on a console: a few lines."""
+
+
+class Brief:
+    """A frozen value whose `repr` is short: of long arrays and lists only the size."""
+
+    def __repr__(self) -> str:
+        """The class with its fields."""
+        parts = [f"{part.name}={_shown(getattr(self, part.name))}" for part in fields(self)]  # type: ignore[arg-type]
+        text = f"{type(self).__name__}({', '.join(parts)})"
+        return text if len(text) <= MOST_CHARACTERS else f"{text[: MOST_CHARACTERS - 4]} …)"
+
+
+class Answer(Brief):
+    """The answer to a question that the command line can ask too."""
+
+    def record(self, units: Units | None = None) -> Any:
+        """The document that the command prints with --json, in the units (by default the description's)."""
+        import robokin  # the package's own face: documents are made in a room above this one
+
+        return robokin.documents.document_of(self, units)
+
+    def _repr_html_(self) -> str:
+        """A table for a notebook."""
+        import robokin
+
+        return robokin.notebook.html_of(self)
+
+
+def _shown(value: Any) -> str:
+    shape = getattr(value, "shape", None)
+    if isinstance(shape, tuple):
+        if len(shape) == 1 and shape[0] <= MOST_NUMBERS:
+            return f"[{', '.join(f'{number:.6g}' for number in value.tolist())}]"
+        return f"array{shape}" if shape else f"{value:.6g}"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, str):
+        return repr(value)
+    if callable(value):
+        return "…"
+    if isinstance(value, tuple | list | dict) or hasattr(value, "keys"):
+        short = isinstance(value, tuple | list) and all(isinstance(one, int | float | str | bool) for one in value)
+        if short and len(value) <= MOST_NUMBERS:
+            return f"({', '.join(_shown(one) for one in value)})"
+        return f"({len(value)} items)" if len(value) else "()"
+    if is_dataclass(value) and type(value).__repr__ is Brief.__repr__:
+        return f"{type(value).__name__}(…)"
+    text = repr(value)
+    return text if len(text) <= MOST_CHARACTERS // 4 else f"{type(value).__name__}(…)"

@@ -1,0 +1,207 @@
+"""Schemas of `robokin list`, `show` and `validate`."""
+
+from __future__ import annotations
+
+from robokin.records.schema_words import (
+    ROBOT,
+    UNITS,
+    Schema,
+    documents,
+    flag,
+    head,
+    items,
+    mapping,
+    matrix,
+    maybe,
+    number,
+    numbers,
+    record,
+    rows,
+    text,
+    texts,
+    whole,
+    word,
+)
+
+KIND = word("What it is.", "robot", "mechanism", "wheeled")
+SPACE = word("Where it lives.", "planar", "spherical", "spatial")
+PARAMETERS = mapping(number("Its value, in the description's units."), "The description's parameters, by name.")
+
+
+def list_() -> Schema:
+    """Documents of `robokin list`."""
+    keys = head("name", text("The name in full."))
+    document = record(
+        "An entry of the library.",
+        {
+            **keys,
+            "kind": KIND,
+            "joints": text("The joints' types, or what else tells it apart, in a word: RRRRRR."),
+            "dof": maybe(whole("Joints of a robot, or the freedoms that the file states."), "where none are stated"),
+            "source": text("Where the numbers come from."),
+        },
+    )
+    return documents("list", "The library; `units` are those of the description.", ["entry"], entry=document)
+
+
+def validate() -> Schema:
+    """Documents of `robokin validate`."""
+    place = record(
+        "A place in the file, and what is said of it.",
+        {
+            "line": maybe(whole("Where, from 1.", 1), "where that is not known"),
+            "column": maybe(whole("Where in the line, from 1.", 1), "where that is not known"),
+            "message": text("What is said of it."),
+        },
+    )
+    document = record(
+        "Whether a file is a description.",
+        {
+            **head("file", text("The file, as it was given."), units=False),
+            "valid": flag("Whether it is one."),
+            "kind": maybe(KIND, "where it is none"),
+            "name": maybe(text("The name in full."), "where it is none"),
+            "error": maybe(text("What is wrong."), "where nothing is"),
+            "line": maybe(whole("Where, from 1.", 1), "where that is not known"),
+            "column": maybe(whole("Where in the line, from 1.", 1), "where that is not known"),
+            "errors": items(place, "Every mistake, in the order of the file."),
+            "notes": items(place, "What looks like a slip in a description that can be read."),
+            "units": maybe(UNITS, "where it is none"),
+        },
+    )
+    return documents("validate", "A verdict for each file.", ["verdict"], verdict=document)
+
+
+def show() -> Schema:
+    """Documents of `robokin show`."""
+    about = {
+        "name": text("The name in full."),
+        "description": text("What it is, in a line."),
+        "source": text("Where the numbers come from."),
+        "parameters": PARAMETERS,
+    }
+    variants = {"robot": _robot(about), "mechanism": _mechanism(about), "wheeled": _base(about)}
+    return documents("show", "What a description describes.", [], **variants)
+
+
+def _robot(about: dict[str, Schema]) -> Schema:
+    limits = maybe(numbers("Least and greatest value [joint].", 2), "where it has none")
+    frames = {
+        "origin": maybe(matrix("Pose in the frame before, at q = 0"), "in a DH table"),
+        "axis": maybe(numbers("The joint's axis [1].", 3), "of a fixed row, and where it is z"),
+    }
+    cells = {
+        "theta": maybe(number("Its constant [angle]."), "where the variable stands"),
+        "d": maybe(number("Its constant [length]."), "where the variable stands"),
+        "a": number("The row's a [length]."),
+        "alpha": number("The row's alpha [angle]."),
+    }
+    row = record(
+        "A row of the table.",
+        {
+            "i": whole("Its number.", 1),
+            "name": text("Its name."),
+            "type": word("What it does.", "revolute", "prismatic", "fixed"),
+            "variable": maybe(text("Its variable, such as q1."), "of a fixed row"),
+            "offset": maybe(number("Added to the variable [joint]."), "of a fixed row"),
+            "sense": maybe(whole("1, or -1 where the variable enters with the other sign.", -1), "of a fixed row"),
+            "limits": limits,
+        },
+        frames | cells,
+    )
+    at_zero = record(
+        "Where the tool frame stands with every joint at zero.",
+        {
+            "position": numbers("Its origin [length].", 3),
+            "z": numbers("Its z axis [1].", 3),
+            "z_along": maybe(word("The base's axis that z is along.", "+x", "-x", "+y", "-y", "+z", "-z"), "else"),
+        },
+    )
+    inverse = record(
+        "How the inverse kinematics is solved.",
+        {
+            "method": text("The method."),
+            "reason": text("Why that one."),
+            "complete": flag("Whether every solution is found."),
+        },
+    )
+    return record(
+        "A robot.",
+        {
+            **head("robot", ROBOT),
+            **about,
+            "kind": {"const": "robot", "description": "What it is."},
+            "convention": word("How the rows are read.", "standard", "modified", "frames"),
+            "joints": text("The joints' types in a word, such as RRRRRR."),
+            "class": text("The class of arm."),
+            "wrist": maybe(text("The wrist."), "where it has none"),
+            "n": whole("Joints, N.", 0),
+            "m": whole("Dimension of the poses that it can reach, M.", 0),
+            "redundancy": whole("R = N − M."),
+            "grubler": whole("Grübler's count."),
+            "inverse": maybe(inverse, "of a robot without joints"),
+            "base": matrix("From the world to the first frame"),
+            "tool": matrix("From the last frame to the end effector"),
+            "at_zero": at_zero,
+            "rows": items(row, "The table."),
+            "poses": mapping(numbers("Joint values [joint]."), "Named poses."),
+        },
+    )
+
+
+def _mechanism(about: dict[str, Schema]) -> Schema:
+    joint = record(
+        "A joint.",
+        {
+            "name": text("Its name."),
+            "type": text("Its type."),
+            "links": texts("The links that it joins."),
+            "freedoms": whole("Its freedoms f.", 0),
+            "at": maybe(numbers("A point on it [length].", 3), "where none is given"),
+            "axes": maybe(rows("Its unit directions [1].", None, 3), "where none is given"),
+            "actuated": flag("Whether it is driven."),
+            "turns": maybe(numbers("Of gears and belts: each link's turns for one of the first [1]."), "of others"),
+            "carrier": maybe(text("The link that carries the wheels."), "where it is clear, and of others"),
+        },
+    )
+    return record(
+        "A mechanism.",
+        {
+            **head("mechanism", text("The mechanism, as `id`.")),
+            **about,
+            "kind": {"const": "mechanism", "description": "What it is."},
+            "space": SPACE,
+            "links": texts("The links."),
+            "ground": text("The link that stands still."),
+            "output": maybe(text("The link that the others serve."), "where none is named"),
+            "grubler": whole("Grübler's count."),
+            "joints": items(joint, "The joints."),
+        },
+    )
+
+
+def _base(about: dict[str, Schema]) -> Schema:
+    wheel = record(
+        "A wheel.",
+        {
+            "name": text("Its name."),
+            "type": word("What it is.", "fixed", "steered", "castor", "swedish", "ball"),
+            "at": numbers("Where it is, x and y [length].", 2),
+            "angle": number("The direction in which it rolls [angle]."),
+            "radius": maybe(number("Its radius [length].", 0.0), "where none is given"),
+            "offset": maybe(number("A castor's, from swivel to wheel [length]."), "of others"),
+            "roller": maybe(number("The direction of a Swedish wheel's rollers [angle]."), "of others"),
+            "driven": flag("Whether a motor turns it."),
+            "turned": flag("Whether a motor steers it."),
+        },
+    )
+    return record(
+        "A wheeled base.",
+        {
+            **head("base", text("The base, as `id`.")),
+            **about,
+            "kind": {"const": "wheeled", "description": "What it is."},
+            "steering": word("How steered wheels go together.", "independent", "parallel"),
+            "wheels": items(wheel, "The wheels."),
+        },
+    )

@@ -1,0 +1,201 @@
+"""Schemas of `robokin fk`, `frame`, `jacobian`, `singular` and `path`."""
+
+from __future__ import annotations
+
+from robokin.records.schema_words import (
+    ROBOT,
+    Q,
+    Schema,
+    documents,
+    flag,
+    head,
+    items,
+    mapping,
+    matrix,
+    maybe,
+    number,
+    numbers,
+    record,
+    rows,
+    text,
+    whole,
+    word,
+)
+
+RPY = numbers("Roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll) [angle].", 3)
+EULER = numbers("Z Y Z Euler angles phi, theta, psi [angle].", 3)
+ROTVEC = numbers("The rotation vector: axis times angle [angle].", 3)
+QUATERNION = numbers("The rotation as a quaternion w, x, y, z of length 1 [1].", 4)
+POSITION = numbers("The origin x, y, z [length].", 3)
+
+POSE = record(
+    "A pose of the end effector in the world.",
+    {"matrix": matrix("The pose"), "position": POSITION, "rpy": RPY, "quaternion": QUATERNION},
+    {
+        "euler": EULER,
+        "quaternion-xyzw": numbers("The quaternion as x, y, z, w [1].", 4),
+        "rotvec": ROTVEC,
+        "abc": numbers("KUKA's angles A, B, C [angle].", 3),
+        "wpr": numbers("FANUC's angles W, P, R [angle].", 3),
+    },
+)
+FRAMES = items(
+    record("A frame.", {"name": text("The row's number, from 1."), "matrix": matrix("Its pose in the world")}),
+    "The frame after each row of the table.",
+)
+SYMBOLS = items(items({"type": "string"}, "A row of expressions."), "A matrix of expressions, row by row.")
+NAMED_SYMBOLS = items(
+    record("A matrix.", {"name": text("Its name, such as A1."), "matrix": SYMBOLS}), "The matrices that T is made of."
+)
+
+
+def fk() -> Schema:
+    """Documents of `robokin fk`."""
+    pose = record(
+        "The pose of the end effector at joint values.",
+        {**head("robot", ROBOT), "q": Q, "within_limits": flag("Whether all joints are within limits."), "pose": POSE},
+        {"frames": FRAMES},
+    )
+    symbolic = record(
+        "Forward kinematics in symbols (--symbolic).",
+        {
+            **head("robot", ROBOT),
+            "matrices": NAMED_SYMBOLS,
+            "T": SYMBOLS,
+            "symbols": mapping({"type": ["string", "number"]}, "What each symbol stands for: a number or a text."),
+        },
+        {"frames": NAMED_SYMBOLS},
+    )
+    return documents("fk", "Poses, or forward kinematics in symbols.", ["pose"], pose=pose, symbolic=symbolic)
+
+
+def frame() -> Schema:
+    """Documents of `robokin frame`."""
+    axis_angle = record(
+        "The rotation as an angle about an axis.",
+        {"axis": numbers("A unit vector [1].", 3), "angle": number("From 0 to half a turn [angle].", 0.0)},
+    )
+    columns = {
+        name: numbers(f"Column {name} of the rotation: the frame's {axis} axis [1].", 3)
+        for name, axis in zip("nsa", "xyz", strict=True)
+    }
+    document = record(
+        "A transform.",
+        {
+            **head("expression", text("The transform expression.")),
+            "matrix": matrix("The transform"),
+            **columns,
+            "p": numbers("Column p: the origin [length].", 3),
+            "position": POSITION,
+            "rpy": RPY,
+            "euler": EULER,
+            "quaternion": QUATERNION,
+            "axis_angle": axis_angle,
+            "rotvec": ROTVEC,
+        },
+        {"point": numbers("Where --point is taken to [length].", 3)},
+    )
+    return documents("frame", "A transform in every form; `id` repeats the expression.", [], transform=document)
+
+
+LOST = record(
+    "A direction that the tool cannot move in.",
+    {
+        "twist": numbers("Of length 1, linear before angular, lengths in `size` [1].", 6),
+        "words": text("The same in words."),
+    },
+)
+
+
+def jacobian() -> Schema:
+    """Documents of `robokin jacobian`."""
+    document = record(
+        "The geometric Jacobian at joint values, and what it says.",
+        {
+            **head("robot", ROBOT),
+            "jacobian_units": record(
+                "The units of `jacobian`: angles are radians there.",
+                {"length": word("Unit of lengths.", "m", "cm", "mm", "in"), "angle": word("Unit of angles.", "rad")},
+            ),
+            "q": Q,
+            "frame": word("Whose axes the twist is in.", "base", "tool"),
+            "task": word("What of the twist counts.", "pose", "position", "orientation"),
+            "jacobian": rows("6×n, a row each for vx, vy, vz, wx, wy, wz [length/rad or 1; 1 or 0].", 6),
+            "rank": whole("Directions that the tool can move in here.", 0),
+            "full_rank": whole("Directions that it can move in at other configurations.", 0),
+            "size": number("The arm's size, which makes lengths pure numbers [length].", 0.0),
+            "singular_values": numbers("Greatest first, lengths in `size` [1]."),
+            "manipulability": number("√det(J Jᵀ) of the Jacobian as it is printed.", 0.0),
+            "condition": maybe(number("Greatest by least singular value [1].", 1.0), "where it is infinite"),
+            "singular_direction": maybe(items(LOST, "Directions that are lost here."), "where nothing is lost"),
+            "null_space_joints": items(whole("A joint, from 1.", 1), "Joints that can move while the tool stands."),
+        },
+    )
+    return documents("jacobian", "Jacobians.", ["jacobian"], jacobian=document)
+
+
+def singular() -> Schema:
+    """Documents of `robokin singular`."""
+    about = {
+        **head("robot", ROBOT),
+        "task": word("What of the twist counts.", "pose", "position", "orientation"),
+        "full_rank": whole("Directions that the tool can move in in general.", 0),
+    }
+    one = {
+        "name": word("Where it is.", "shoulder", "elbow", "boundary", "wrist", "general"),
+        "joints": items(whole("A joint, from 1.", 1), "The joints that the condition is on."),
+        "condition": text("The condition in a line."),
+        "values": {
+            "description": "Of one joint its values, of several a list for each set of values [joint].",
+            "anyOf": [numbers("Values of one joint."), rows("Sets of values.")],
+        },
+        "within_limits": items(flag("Whether the joint limits allow them."), "A flag for each of `values`."),
+        "example": Q,
+        "example_within_limits": flag("Whether the example is within the joint limits."),
+        "lost": text("What the tool cannot do at the example."),
+    }
+    whole_list = record(
+        "All singular configurations.",
+        {**about, "singularities": items(record("A condition.", one), "The conditions that were found.")},
+    )
+    return documents(
+        "singular", "Singular configurations; a line of JSON lines holds one.", [], singularities=whole_list,
+        singularity=record("One condition.", about | one),
+    )  # fmt: skip
+
+
+def path() -> Schema:
+    """Documents of `robokin path`."""
+    row = {
+        "t": number("Time from 0 to 1 [1].", 0.0),
+        "q": Q,
+        "position": POSITION,
+        "rpy": RPY,
+    }
+    event = record(
+        "Something on the way.",
+        {
+            "kind": word("What happens.", "limit", "singularity", "unreachable", "jump"),
+            "fraction": number("Where on the path, from 0 to 1 [1].", 0.0),
+            "joint": maybe(whole("The joint, from 1.", 1), "where it is not about one joint"),
+            "value": maybe(number("The joint's value there [joint]."), "where it is not about one joint"),
+            "words": text("The same in words."),
+        },
+    )
+    document = record(
+        "A path.",
+        {
+            **head("robot", ROBOT),
+            "kind": word("How the tool moves.", "joint", "line"),
+            "steps": whole("Steps that were asked for.", 1),
+            "complete": flag("Whether the end is reached."),
+            "fraction": number("The part of the path that can be followed, from 0 to 1 [1].", 0.0),
+            "length": number("How far the tool's origin travels [length].", 0.0),
+            "greatest_moves": numbers("How far apart each joint's least and greatest values are [joint]."),
+            "least_manipulability": number("The least √det(J Jᵀ) on the way.", 0.0),
+            "events": items(event, "What happens on the way, in its order."),
+            "path": items(record("A row.", row), "The rows, from the start to where the path ends."),
+        },
+    )
+    line = record("A row (JSON lines).", {**head("robot", ROBOT), **row})
+    return documents("path", "A path; a line of JSON lines holds one row.", [], path=document, row=line)
