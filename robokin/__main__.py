@@ -1,6 +1,11 @@
 """`python -m robokin`."""
 
-from robokin.cli import main
+import sys
+
+try:
+    from robokin.cli import main
+except KeyboardInterrupt:  # before requests to end are heeded
+    sys.exit(130)
 
 if __name__ == "__main__":
     main()

@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from robokin.expected import expect_choice
+
 METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 """Length units by name: metres in one of them."""
 
@@ -21,6 +23,11 @@ class Units:
 
     length: str = "m"
     angle: str = "rad"
+
+    def __post_init__(self) -> None:
+        """Refuse what is no unit. Raises InputError."""
+        expect_choice(self.length, METRES, "length")
+        expect_choice(self.angle, RADIANS, "angle")
 
     @property
     def metres(self) -> float:

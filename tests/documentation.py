@@ -28,7 +28,7 @@ ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
 INDEX = DOCS / "README.md"
 
-NOT_RUN = re.compile(r"(make|pip|git|cd) ")
+NOT_RUN = re.compile(r"(make|pip|pipx|uv|git|cd) ")
 """Commands of an installation, which a page may show without output."""
 
 OPTIONAL = ("jq",)

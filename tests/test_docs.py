@@ -167,7 +167,7 @@ def test_in_this_process_and_in_a_shell_the_same_is_seen(command):
 def test_a_new_command_gets_a_page():
     page = rewritten(documentation.new_command_page("schema", COMMANDS["schema"]))
     assert page.startswith("# robokin schema\n\n")
-    assert "robokin schema [OPTIONS]" in page
+    assert "robokin schema [COMMAND] [OPTIONS]" in page
 
 
 def test_make_docs_has_nothing_to_do_on_a_true_page(monkeypatch, capsys):

@@ -13,15 +13,16 @@ import robokin
 
 PACKAGE = Path(robokin.__file__).parent
 ORDER = [
-    "errors", "units", "spatial", "model", "kinematics", "symbolic", "description", "inverse", "lessons", "workspace",
-    "mobility", "grading", "pictures", "cli",
+    "errors", "files", "expected", "units", "brief", "spatial", "model", "kinematics", "symbolic", "description",
+    "tables", "inverse", "lessons", "workspace", "mobility", "grading", "pictures", "records", "cli", "drawings",
+    "symbol_matrices", "documents", "notebook",
 ]  # fmt: skip
 """Each room imports only rooms before it. description (text to model) also needs the Denavit-Hartenberg
 matrices; what calculates must not need description, which `CALCULATING` says."""
 
 CALCULATING = [
-    "errors", "units", "spatial", "model", "kinematics", "symbolic", "inverse", "lessons", "workspace", "mobility",
-    "grading",
+    "errors", "expected", "units", "brief", "spatial", "model", "kinematics", "symbolic", "inverse", "lessons",
+    "workspace", "mobility", "grading",
 ]  # fmt: skip
 HOMES = {"yaml": "description", "typer": "cli", "rich": "cli/output", "matplotlib": "pictures"}
 
@@ -87,9 +88,14 @@ def test_help_starts_without_the_heavy_libraries():
     assert not {"numpy", "yaml", "rich.console", "pydantic"} & loaded_by("--help")
 
 
+def test_a_list_of_the_library_reads_no_description_and_needs_no_numbers():
+    assert not {"numpy", "yaml", "robokin.description.read"} & loaded_by("list")
+
+
 def test_a_json_answer_needs_no_table_and_no_validator():
     names = loaded_by("fk", "puma560", "--q", "home", "--json")
-    assert not {"rich.table", "pydantic", "robokin.description.mechanisms", "robokin.cli.rows"} & names
+    heavy = {"rich.table", "robokin.cli.output.tables", "pydantic", "robokin.description.mechanisms"}
+    assert not (heavy | {"robokin.tables.rows"}) & names
 
 
 def test_a_workspace_in_text_needs_no_matplotlib():

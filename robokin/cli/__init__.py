@@ -11,25 +11,35 @@ DONE, WRONG_INPUT, NO, INTERRUPTED = 0, 2, 3, 130
 def main() -> None:
     """Run the command line on the process's arguments and exit with its status."""
     try:
-        _end_in_order()
-        status = _flush(run(sys.argv[1:]))
+        from robokin.cli import interruptions
     except KeyboardInterrupt:
         say("interrupted")
-        _abandon(sys.stdout)
-        status = INTERRUPTED
+        sys.exit(INTERRUPTED)
+    try:
+        interruptions.heed()
+        from robokin.cli.standard_streams import complete
+
+        complete()
+        status = _flush(run(sys.argv[1:]))
+        interruptions.too_late()
+    except BaseException:
+        # Whatever has become of the exception that a request to end raised, the request holds.
+        interruptions.leave_if_asked()
+        raise
     sys.exit(status)
 
 
 def run(arguments: list[str]) -> int:
     """Run one command line; its exit status. A sentence on stderr says what was wrong."""
-    from robokin.errors import RobokinError
+    from robokin.errors import DescriptionError, RobokinError
 
     try:
         from robokin.cli.app import invoke
 
         return invoke(arguments)
     except RobokinError as error:
-        say(str(error))
+        # All mistakes of a description are said at once, each with its line.
+        say(str(error), lines=isinstance(error, DescriptionError))
         return WRONG_INPUT
     except BrokenPipeError:
         # Whoever reads has what it wants (`| head`): a quiet end, and nothing more to be flushed.
@@ -42,27 +52,15 @@ def run(arguments: list[str]) -> int:
         return WRONG_INPUT
 
 
-def say(sentence: str) -> None:
-    """A note or an error, on stderr."""
+def say(sentence: str, lines: bool = False) -> None:
+    """A note or an error, on stderr, in which nothing steers the terminal: one line, unless `lines` may be several."""
     import contextlib
 
-    if sys.stderr is not None:  # it is None where the process was started without one
+    from robokin.errors import visible
+
+    if sys.stderr is not None:  # it is None where a program of its own has none
         with contextlib.suppress(OSError, ValueError):
-            print(f"robokin: {sentence}", file=sys.stderr)
-
-
-def _end_in_order() -> None:
-    """Let a request to terminate end the program by way of its `finally`s, so that no temporary file stays."""
-    import signal
-
-    def end(number: int, frame: object) -> None:
-        _abandon(sys.stdout)
-        raise SystemExit(128 + number)
-
-    for name in ("SIGTERM", "SIGHUP"):
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
-            signal.signal(number, end)
+            print(f"robokin: {visible(sentence, lines)}", file=sys.stderr, flush=True)
 
 
 def _flush(status: int) -> int:

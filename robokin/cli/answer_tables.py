@@ -63,16 +63,16 @@ class AnswerTable:
         """What is to be said of the rows."""
         nearest = result.nearest
         if not result.solutions and nearest is not None:
-            off = f"{show(nearest.position_error / self.units.metres)} {self.units.length}"
+            off = f"position error {show(nearest.position_error / self.units.metres)} {self.units.length}"
             if self.task != "position":
-                off += f" and {show(nearest.angle_error / self.units.radians)} {self.units.angle}"
-            yield f"~ the nearest configuration, off by {off}"
+                off += f", angle error {show(nearest.angle_error / self.units.radians)} {self.units.angle}"
+            yield f"~ the nearest configuration ({off})"
         elif any(s.position_error > 1e-6 or s.angle_error > 1e-6 for s in result.solutions):
             position = max(s.position_error for s in result.solutions) / self.units.metres
             angle = max(s.angle_error for s in result.solutions) / self.units.radians
             yield (
-                f"not exact, within the tolerances: off by {show(position)} {self.units.length} "
-                f"and {show(angle)} {self.units.angle}"
+                f"not exact, within the tolerances: position error {show(position)} {self.units.length}, "
+                f"angle error {show(angle)} {self.units.angle}"
             )
         if any(not solution.within_limits for solution in shown):
             yield "! outside the joint limits"

@@ -26,14 +26,14 @@ def verdict(result: Result, idle: Sequence[int] = (), held: str = "", turns: boo
         return f"no solution{held}: {result.reason}{'; ' if because else ''}{because} {method}"
     rests_on = "".join(f": {sentence}" for sentence in _certificate(result))
     turned = ", full turns included" if turns else ""
-    but = f" but for the value of {joint_names(idle)}" if idle else ""
+    but = f" (any value of {joint_names(idle)})" if idle else ""
     if total := _cut_from(result, turns):
         listed = counted(len(result.solutions), "solution")
         once = ", each self-motion counted once" if any(map(moves_within, result.families)) else ""
         return f"{listed}{held} of all {total}{turned}{once}{but}{rests_on} {method}"
-    whole = "all there are" if result.complete else "there may be more"
+    whole = "these are all" if result.complete else "there may be more"
     if result.postures and not result.complete:
-        whole = f"all there are{but}"
+        whole = f"these are all{but}"
     listed = counted(len(result.solutions), "solution") if turns else _listed(result)
     return f"{listed}{held}{turned}, {whole}{rests_on} {method}"
 

@@ -19,6 +19,8 @@ from robokin.inverse.result import BatchResult, Result, Solution
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import CLOSES
 from robokin.model import Robot
+from robokin.records.envelope import envelope
+from robokin.tables.carried import Carried, nothing
 from robokin.units import Units
 
 if TYPE_CHECKING:
@@ -31,6 +33,19 @@ TURNED_ROWS = 10_000
 
 NEAREST = "solved for the nearest pose, within the tolerances"
 """Why a list of solutions that miss the target by no more than the tolerances is not said to be complete."""
+
+
+RECORD_KEYS = (
+    "schema", "robot", "units", "target", "hold", "reachable", "complete", "basis", "certificate", "counts", "families",
+    "method", "reason", "solutions", "nearest", "explanation",
+)  # fmt: skip
+"""What a JSON document says itself; an `id` of the input takes the place of its own, which `robot` says too."""
+
+
+def csv_columns(robot: Robot) -> list[str]:
+    """The columns of a CSV."""
+    names = [f"q{i}" for i in range(1, robot.n + 1)]
+    return ["target", "solution", *names, "branch", "within_limits", "position_error", "angle_error", "reason"]
 
 
 @dataclass
@@ -49,6 +64,7 @@ class Answers:
     alone: bool
     explain: bool = False
     held: Mapping[int, float] = field(default_factory=dict)
+    carried: Carried = field(default_factory=nothing)
     count: int = 0
     unreached: int = 0
 
@@ -120,8 +136,7 @@ class Answers:
     def record(self, target: Array, result: Result) -> dict[str, Any]:
         """The JSON document of an answer."""
         record: dict[str, Any] = {
-            "robot": self.robot.id,
-            "units": self.units.as_record(),
+            **envelope("robot", self.robot.id, self.units),
             "target": {"matrix": poses_in(target.copy(), self.units).tolist(), "task": self.task},
         }
         if self.held:
@@ -140,7 +155,7 @@ class Answers:
         }
         if self.explain:
             record["explanation"] = self.explanation(target, result).record()
-        return record
+        return self.carried.in_front_of(record)
 
     def explanation(self, target: Array, result: Result) -> Explanation:
         """The lesson behind an answer."""
@@ -187,30 +202,30 @@ class Answers:
 
     def csv(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """A row a solution. Works on arrays: most of the time of a batch would else go into objects."""
-        names = [f"q{i}" for i in range(1, self.robot.n + 1)]
-        ends = ["branch", "within_limits", "position_error", "angle_error", "reason"]
-        header = csv_header(["target", "solution", *names, *ends])
+        header = csv_header(csv_columns(self.robot))
         for T, batch in self.batches(blocks):
             listed = np.arange(batch.q.shape[1]) < batch.count[:, None]
             solutions = zip(
                 self.joints(batch.q[listed]),
                 batch.branches(),
-                ("true" if inside else "false" for inside in batch.within_limits[listed].tolist()),
+                batch.within_limits[listed].tolist(),
                 (batch.position_error[listed] / self.units.metres).tolist(),
                 (batch.angle_error[listed] / self.units.radians).tolist(),
                 strict=True,
             )
             rows: list[list[Any]] = []
+            through: list[list[str]] = []
             for i, count in enumerate(batch.count.tolist()):
                 self.count += 1
                 for k in range(1, count + 1):
-                    q, *rest = next(solutions)
-                    rows.append([self.count, k, *q, *rest, ""])
+                    q, branch, *rest = next(solutions)
+                    rows.append([self.count, k, *q, _one_cell(branch), *rest, ""])
                 if not count:
                     rows += self.exceptional(T[i], batch, i)
-            yield header + csv_records(None, rows)
+                through += [self.carried.cells()] * (len(rows) - len(through))
+            yield self.carried.before(header, csv_records(None, rows), through)
             header = b""
-        yield header
+        yield self.carried.before(header, b"")
 
     def exceptional(self, target: Array, batch: BatchResult, i: int) -> Iterator[list[Any]]:
         """The rows of a target without an exact solution."""
@@ -222,7 +237,7 @@ class Answers:
             reason = result.reason
             for k, solution in enumerate(result.solutions, start=1):
                 q, branch, inside, position, angle, *_ = self.solution(solution).values()
-                yield [self.count, k, *q, branch, str(inside).lower(), position, angle, ""]
+                yield [self.count, k, *q, _one_cell(branch), inside, position, angle, ""]
         if reason is not None:
             self.unreached += 1
             yield [self.count, 0, *[""] * (self.robot.n + 4), reason]
@@ -270,6 +285,11 @@ class Answers:
             if self.explain:
                 yield self.explanation(target, result).page()
         yield head
+
+
+def _one_cell(branch: str) -> str:
+    """A branch without commas, so that whoever splits a line at its commas finds the columns."""
+    return branch.replace(", ", " / ")
 
 
 def _listed(result: Result, n: int) -> Array:

@@ -13,21 +13,21 @@ from typer.core import TyperCommand, TyperGroup
 
 from robokin import __version__
 from robokin.cli import DONE, WRONG_INPUT
-from robokin.errors import InputError, did_you_mean
+from robokin.errors import InputError, shown
 
 COMMANDS = {
     "list": "The library of robots and mechanisms.",
     "show": "A robot's table, its class, its wrist and its freedoms.",
     "validate": "Check descriptions.",
-    "schema": "The format of descriptions as a JSON Schema.",
-    "fk": "Forward kinematics: where is the hand?",
-    "ik": "Inverse kinematics: every configuration that reaches a pose.",
+    "schema": "JSON Schemas of descriptions and of each command's documents.",
+    "fk": "Forward kinematics: the pose of the end effector.",
+    "ik": "Inverse kinematics: all joint values for a pose.",
     "jacobian": "The Jacobian: how freely the tool moves at a configuration.",
     "singular": "Where an arm loses a freedom: shoulder, elbow, wrist.",
-    "path": "From here to there, joint by joint or along a straight line.",
+    "path": "A path between two configurations, or along a straight line.",
     "plot": "A picture of an arm or a mechanism, still or turning.",
     "workspace": "What an arm can reach, and how freely the tool can turn.",
-    "dof": "How freely can it move? Grübler's count, and the truth.",
+    "dof": "Degrees of freedom: Grübler's count and the mobility.",
     "check": "Mark answers: poses, joint values, tables, counts.",
     "frame": "Evaluate a transform expression.",
 }
@@ -57,6 +57,10 @@ def verbatim(parameters: Any) -> Any:
     return parameters
 
 
+ALSO = {"--quaternion": "--quat"}
+"""Other names of options."""
+
+
 class TextCommand(TyperCommand):
     """A command whose parameters are texts, and whose help ends with examples."""
 
@@ -70,6 +74,23 @@ class TextCommand(TyperCommand):
         """What follows the command's name, as it is mostly typed."""
         arguments = [str(param.metavar) for param in self.get_params(ctx) if param.param_type_name == "argument"]
         return [*arguments, "[OPTIONS]"]
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the arguments. Raises InputError for what follows the last, and for an option given two values."""
+        from robokin.cli.usage import refuse_second_values, surplus_sentence
+
+        parameters = self.get_params(ctx)
+        known = {option for param in parameters for option in param.opts}
+        for i, (name, equals, value) in enumerate([argument.partition("=") for argument in args]):
+            if ALSO.get(name) in known:
+                args[i] = ALSO[name] + equals + value
+        if not ctx.resilient_parsing:
+            refuse_second_values(parameters, args)
+        ctx.allow_extra_args = True
+        rest = list(super().parse_args(ctx, args))
+        if rest and not ctx.resilient_parsing:
+            raise InputError(surplus_sentence(" ".join(rest), ctx.command_path))
+        return rest
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """The arguments and the options."""
@@ -111,8 +132,9 @@ class Commands(TyperGroup):
             return module.group() if hasattr(module, "group") else build(cmd_name, module.command)
         if ctx.resilient_parsing or cmd_name.startswith("-"):
             return None
-        hint = did_you_mean(cmd_name, COMMANDS) or f", expected one of {', '.join(COMMANDS)}"
-        raise InputError(f"there is no command '{cmd_name}'{hint}")
+        from robokin.cli.usage import command_hint
+
+        raise InputError(f"there is no command '{shown(cmd_name)}'{command_hint(cmd_name, COMMANDS)}")
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """The overview, from `COMMANDS`, so that help imports no command."""
@@ -136,7 +158,8 @@ app = typer.Typer(
     name="robokin",
     cls=Commands,
     help="Robot kinematics from a YAML file: robokin COMMAND ROBOT [options].",
-    epilog="`robokin COMMAND --help` tells more. ROBOT is a name of `robokin list`, or a path to a description.",
+    epilog="`robokin COMMAND --help` tells more. ROBOT is a name of `robokin list`, or a path to a description. "
+    "Exit status: 0 done, and the answer is yes; 2 the input is wrong; 3 done, and the answer is no; 130 interrupted.",
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     context_settings=CONTEXT,
@@ -152,7 +175,7 @@ def _version(value: bool) -> None:
 @app.callback()
 def options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="The version, and exit.")
+        bool, typer.Option("--version", "-V", callback=_version, is_eager=True, help="The version, and exit.")
     ] = False,
 ) -> None:
     """Robot kinematics from a YAML file."""
@@ -181,5 +204,5 @@ def invoke(arguments: list[str]) -> int:
             raise
         from robokin.cli.usage import usage_sentence
 
-        raise InputError(usage_sentence(error)) from None
+        raise InputError(usage_sentence(error, arguments)) from None
     return status if isinstance(status, int) else DONE

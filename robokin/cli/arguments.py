@@ -5,19 +5,29 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.cli import say
 from robokin.cli.output.numbers import counted
 from robokin.description.expressions import Scope, evaluate
 from robokin.description.library import load_any
 from robokin.errors import ExpressionError, InputError, did_you_mean, shown
-from robokin.model import Robot, WheeledBase
+from robokin.model import Mechanism, Robot, WheeledBase
 from robokin.units import Units
 
 Array = NDArray[np.float64]
 
 
+def load_entry(name: str, overrides: dict[str, str], mode: int | None = None) -> Robot | Mechanism | WheeledBase:
+    """What a command works on; what looks like a slip in it is noted on stderr, in one line. Raises InputError."""
+    loaded = load_any(name, overrides, mode)
+    if loaded.notes:
+        more = len(loaded.notes) - 1
+        say(str(loaded.notes[0]) + (f"; {more} more: robokin validate {name}" if more else ""))
+    return loaded
+
+
 def load_robot(name: str, overrides: dict[str, str]) -> Robot:
     """The robot that a command works on. Raises InputError, also for a mechanism or a wheeled base."""
-    loaded = load_any(name, overrides)
+    loaded = load_entry(name, overrides)
     if isinstance(loaded, WheeledBase):
         raise InputError(f"{name} is a wheeled base, expected a robot")
     if not isinstance(loaded, Robot):

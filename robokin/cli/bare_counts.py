@@ -8,6 +8,7 @@ from typing import Any
 from robokin.cli.output.numbers import counted
 from robokin.errors import InputError, nearest, or_list, shown
 from robokin.mobility.count import grubler, grubler_by_constraints
+from robokin.records.envelope import envelope
 
 LAMBDA = {"planar": 3, "spherical": 3, "spatial": 6}
 """Grübler's λ of each space. (The model has it too, but arrays with it, and a bare count needs none.)"""
@@ -129,7 +130,7 @@ def count_record(name: str | None, space: str, links: int, types: list[dict[str,
     f = [record["freedoms"] for record in types for _ in range(record["count"])]
     form, total = grubler_by_constraints(order, links, f), order * len(f) - sum(f)
     return {
-        "name": name,
+        **envelope("name", name, None),
         "space": space,
         "lambda": order,
         "links": links,

@@ -7,16 +7,19 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.cli import say
 from robokin.cli.arguments import parse_configuration
+from robokin.description.typed_angles import unit_of_values
 from robokin.errors import InputError
 from robokin.model import Robot
+from robokin.tables.carried import Carried
 from robokin.units import Units
 
 Array = NDArray[np.float64]
 
 
 def configurations(
-    robot: Robot, units: Units, q: list[str] | None, input: str | None
+    robot: Robot, units: Units, q: list[str] | None, input: str | None, carried: Carried
 ) -> tuple[Iterable[Array], bool, bool]:
     """Blocks of configurations (m, n) in the units, whether they are a stream, and whether there is just one.
 
@@ -28,7 +31,7 @@ def configurations(
         raise InputError("--input and --q exclude each other, expected one of them")
     source = input if input is not None else "-" if q == ["-"] else None
     if source is not None:
-        return read_configurations(source, robot, units), True, False
+        return read_configurations(source, robot, units, carried), True, False
     if not q:
         example = ",".join(["0"] * robot.n)
         raise InputError(
@@ -38,19 +41,26 @@ def configurations(
     if "-" in q:
         raise InputError("--q - stands for all configurations on standard input, expected no other --q beside it")
     given = np.array([parse_configuration(text, robot, units) for text in q])
+    if not all(text.strip() in robot.poses for text in q):
+        say_unit(robot, units, given)
     return [given], False, len(given) == 1
 
 
-def read_configurations(source: str, robot: Robot, units: Units) -> Iterator[Array]:
-    """Blocks of configurations (m, n) from a file or from standard input, in the units."""
-    from robokin.cli.rows import Columns, open_input, read_rows
+def read_configurations(source: str, robot: Robot, units: Units, carried: Carried) -> Iterator[Array]:
+    """Blocks of configurations (m, n) from a file or from standard input, in the units.
 
-    columns = Columns(
-        names=tuple(f"q{i}" for i in range(1, robot.n + 1)),
-        aliases=tuple(joint.name for joint in robot.joints),
-        angles=tuple(bool(turns) for turns in robot.revolute),
-        key="q",
-        what=f"one for each joint of {robot.name} ({robot.types})",
-    )
-    with open_input(source) as (stream, name):
-        yield from read_rows(stream, name, columns, units)
+    `carried` takes what is not understood.
+    """
+    from robokin.tables.joints import JointColumns
+    from robokin.tables.rows import read_rows
+
+    for i, block in enumerate(read_rows(source, JointColumns(robot, units), carried, say)):
+        if i == 0:
+            say_unit(robot, units, block, "standard input: " if source == "-" else f"{source}: ")
+        yield block
+
+
+def say_unit(robot: Robot, units: Units, q: Array, where: str = "") -> None:
+    """A note where joint values q: (m, n) look like angles in the other unit."""
+    if note := unit_of_values(robot, units, q):
+        say(where + note)

@@ -126,9 +126,9 @@ class Explanation:
 
     def page(self) -> bytes:
         """The lesson as text of 80 columns."""
-        from robokin.cli.output.text import encode
+        from robokin.cli.output.text import page
 
-        return encode("\n".join(["", *self.lines()]) + "\n")
+        return page("\n".join(["", *self.lines()]) + "\n")
 
     def lines(self) -> Iterator[str]:
         """Title, geometry, steps with the ways' headings and ends, and a count."""

@@ -69,6 +69,6 @@ def _joint(name: str, robot: Robot) -> int:
     if found:
         listed = " and ".join(f"joint {i + 1}" for i in found)
         raise InputError(f"{OPTION}: '{name}' names {listed}, expected the number of one of them")
-    known = [*numbers, *(own for own in names if not own.isdecimal())]
+    known = [own for own in names if not own.isdecimal()]
     expected = f", expected q1 to q{robot.n}" if robot.n > 1 else ", expected q1"
     raise InputError(f"{OPTION}: {robot.name} has no joint '{name}'{did_you_mean(name, known) or expected}")

@@ -7,14 +7,14 @@ degree would make every book's formula wrong by 57.3.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import IO, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robokin.cli.arguments import joint_factors
-from robokin.cli.output.text import csv_header, csv_records, json_document, json_line, json_list
+from robokin.cli.output.text import csv_header, csv_records, json_document, json_line, json_list, page
 from robokin.errors import InputError
 from robokin.kinematics.velocity import (
     Differential,
@@ -24,6 +24,8 @@ from robokin.kinematics.velocity import (
     null_space_joints,
 )
 from robokin.model import Robot
+from robokin.records.envelope import envelope
+from robokin.tables.carried import Carried, nothing
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -32,15 +34,31 @@ ROWS = ("vx", "vy", "vz", "wx", "wy", "wz")
 """The Jacobian's rows: linear velocity, then angular."""
 
 
+def _columns(n: int) -> list[str]:
+    """The columns of the joint values and of the Jacobian."""
+    gap = "_" if n > 9 else ""  # j111 would be two things
+    return [f"q{i}" for i in range(1, n + 1)] + [f"j{i}{gap}{k}" for i in range(1, 7) for k in range(1, n + 1)]
+
+
+def taken_by(kind: str, n: int) -> list[str]:
+    """The names that an answer has itself, in CSV or in JSON."""
+    if kind == "csv":
+        values = [f"sigma{i}" for i in range(1, n + 1)]
+        return [*_columns(n), "rank", *values, "manipulability", "condition"]
+    return ["robot", "units", "jacobian_units", "q", "frame", "task", "jacobian", "rank", "full_rank", "size",
+            "singular_values", "manipulability", "condition", "singular_direction", "null_space_joints"]  # fmt: skip
+
+
 @dataclass
 class Jacobians:
-    """Configurations to bytes; `alone` tells that one was asked for."""
+    """Configurations to bytes; `alone` tells that one was asked for, `carried` what goes through."""
 
     robot: Robot
     units: Units
     frame: Literal["base", "tool"]
     task: TaskName | None
     alone: bool
+    carried: Carried = field(default_factory=nothing)
 
     def write(self, kind: str, blocks: Iterable[Array], stream: IO[bytes]) -> Iterator[bytes]:
         """The answers to blocks of configurations (m, n) in the units; arrays go to the stream themselves."""
@@ -102,9 +120,8 @@ class Jacobians:
             lost = []
             if rank < kind.dimension:
                 lost = lost_directions(self.robot, q[i] * joint_factors(self.robot, self.units), self.frame, self.task)
-            yield {
-                "robot": self.robot.id,
-                "units": self.units.as_record(),
+            record = {
+                **envelope("robot", self.robot.id, self.units),
                 "jacobian_units": {"length": self.units.length, "angle": "rad"},
                 "q": values,
                 "frame": self.frame,
@@ -119,6 +136,7 @@ class Jacobians:
                 "singular_direction": [{"twist": one.twist.tolist(), "words": one.words} for one in lost] or None,
                 "null_space_joints": list(null),
             }
+            yield self.carried.in_front_of(record)
 
     # Formats ----------------------------------------------------------------------------------------------
 
@@ -137,27 +155,22 @@ class Jacobians:
 
     def csv(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """A row a configuration; an infinite condition number is an empty cell."""
-        n = self.robot.n
-        names = [f"q{i}" for i in range(1, n + 1)] + [f"j{i}{k}" for i in range(1, 7) for k in range(1, n + 1)]
-        if n > 9:  # j111 would be two things
-            names = [f"q{i}" for i in range(1, n + 1)] + [f"j{i}_{k}" for i in range(1, 7) for k in range(1, n + 1)]
+        names = _columns(self.robot.n)
         header = b""
         for q, found in self.found(blocks):
             if not header:
                 count = found.singular_values.shape[1]
                 values = [f"sigma{i}" for i in range(1, count + 1)]
                 header = csv_header([*names, "rank", *values, "manipulability", "condition"])
-                yield header
+                yield self.carried.before(header, b"")
             numbers = np.concatenate([q, self.matrices(found).reshape(len(q), -1)], axis=1).tolist()
             ends = zip(found.rank.tolist(), found.singular_values.tolist(), self.volumes(found).tolist(), strict=True)
             conditions = ["" if np.isinf(value) else value for value in found.condition.tolist()]
-            yield csv_records(
-                None,
-                [
-                    [*row, rank, *singular, volume, condition]
-                    for row, (rank, singular, volume), condition in zip(numbers, ends, conditions, strict=True)
-                ],
-            )
+            rows = [
+                [*row, rank, *singular, volume, condition]
+                for row, (rank, singular, volume), condition in zip(numbers, ends, conditions, strict=True)
+            ]
+            yield self.carried.before(b"", csv_records(None, rows))
 
     def table(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """A page, or a line for each configuration."""
@@ -170,7 +183,7 @@ class Jacobians:
             return
         from robokin.cli.output.numbers import show
 
-        yield f"{self.robot.name}  {self.heading()}\n\n".encode()
+        yield page(f"{self.robot.name}  {self.heading()}\n\n")
         names = f"{'#':>6}  {'rank':>4}  {'least singular value':>20}  {'manipulability':>16}  {'condition':>12}\n"
         yield names.encode()
         number = 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from robokin.mobility.assembly import missing_geometry
 from robokin.mobility.trace import Trace, trace
 from robokin.model import Mechanism
 from robokin.pictures.mechanism_scene import MechanismScene, mechanism_scene
+from robokin.records.envelope import envelope
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -71,20 +72,23 @@ def answer(kind: str, scene: MechanismScene) -> Iterator[bytes]:
     if kind == "table":
         yield _page(scene)
         return
-    mechanism, units = scene.mechanism, scene.units
-    links = [{"name": link, "points": _points(mechanism, link, units)} for link in mechanism.links]
+    document = drawn_record(scene)
+    links = document["links"]
     if kind == "csv":
-        rows: list[Sequence[Any]] = [
-            [link["name"], joint, *point]
-            for link in links
-            for joint, point in link["points"].items()  # type: ignore[attr-defined]  # a mapping
-        ]
+        rows = [[link["name"], joint, *point] for link in links for joint, point in link["points"].items()]
         yield csv_records(["link", "joint", "x", "y", "z"], rows)
         return
-    head = {"mechanism": mechanism.id, "units": units.as_record()}
     if kind == "jsonl":
+        head = envelope("mechanism", scene.mechanism.id, scene.units)
         yield from (json_line(head | link) for link in links)
         return
+    yield json_document(document)
+
+
+def drawn_record(scene: MechanismScene) -> dict[str, Any]:
+    """The document of `robokin plot` about a mechanism."""
+    mechanism, units = scene.mechanism, scene.units
+    links = [{"name": link, "points": _points(mechanism, link, units)} for link in mechanism.links]
     joints = [
         {"name": joint.name, "type": joint.type, "links": list(joint.links),
          "position": None if joint.at is None else (joint.at / units.metres + 0.0).tolist(),
@@ -92,7 +96,7 @@ def answer(kind: str, scene: MechanismScene) -> Iterator[bytes]:
         for joint in mechanism.joints
     ]  # fmt: skip
     more = {"name": mechanism.name, "space": mechanism.space, "ground": mechanism.ground}
-    yield json_document(head | more | {"links": links, "joints": joints})
+    return envelope("mechanism", mechanism.id, units) | more | {"links": links, "joints": joints}
 
 
 def _points(mechanism: Mechanism, link: str, units: Units) -> dict[str, list[float]]:

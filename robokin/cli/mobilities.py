@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from robokin.cli.bare_counts import LETTERS, count_record, type_record
 from robokin.model import Mechanism, Robot, WheeledBase
+from robokin.records.envelope import envelope
 from robokin.units import Units
 
 if TYPE_CHECKING:
@@ -159,7 +160,7 @@ def wheeled_record(base: WheeledBase, found: Manoeuvrability, units: Units) -> d
     """A base's degrees of mobility, steerability and manoeuvrability, and what its motors command of the first two."""
     commands = found.commands
     record = {
-        "name": base.name,
+        **envelope("name", base.name, None, base.id),
         "space": "planar",
         "lambda": found.total,
         **dict.fromkeys(("links", "joints", "freedoms", "grubler", "constraints")),
@@ -171,7 +172,6 @@ def wheeled_record(base: WheeledBase, found: Manoeuvrability, units: Units) -> d
         "holonomic": found.holonomic,
         "note": found.note,
         "kind": "wheeled",
-        "id": base.id,
         "units": units.as_record(),
         "wheels": [{"name": wheel.name, "type": wheel.type} for wheel in base.wheels],
         "steerability": found.steerability,

@@ -1,4 +1,4 @@
-"""Freedoms for eyes: the bookkeeping, the count in both forms, the truth beside it and why."""
+"""Freedoms for eyes: the bookkeeping, the count in both forms, the mobility beside it and why."""
 
 from __future__ import annotations
 
@@ -76,14 +76,14 @@ def _count(record: dict[str, Any]) -> list[tuple[str, str]]:
 
 def _side_by_side(record: dict[str, Any]) -> Any:
     drawn = table()
-    for name in ("count", "truth"):
+    for name in ("Grübler", "mobility"):
         drawn.add_column(name, justify="right", no_wrap=True)
-    drawn.add_column("verdict", overflow="fold")
-    truth = "?" if record["mobility"] is None else str(record["mobility"])
+    drawn.add_column("verdict")
+    mobility = "?" if record["mobility"] is None else str(record["mobility"])
     verdict = VERDICTS[record["verdict"]]
     if record["verdict"] == "singular" and (record["branch_count"] or 1) > 1:
         verdict = f"singular pose, where {record['branch_count']} branches meet: it can do more here than elsewhere"
-    drawn.add_row(str(record["grubler"]), truth, verdict)
+    drawn.add_row(str(record["grubler"]), mobility, verdict)
     return drawn
 
 
@@ -96,7 +96,7 @@ def _mechanism_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
         if record["idle"]:
             do = "does" if record["idle"] == 1 else "do"
             what = "the output" if record["output"] else "anything else"
-            entries.append(("idle", f"{_freedoms(record['idle'])} that {do} not move {what}"))
+            entries.append(("passive", f"{_freedoms(record['idle'])} that {do} not move {what}"))
         if record["dead_joints"]:
             entries.append(("dead", f"{_joints_named(record['dead_joints'])}, held by the others"))
         entries += _branch_entries(record)
@@ -125,7 +125,7 @@ def _modes(record: dict[str, Any]) -> Any:
     drawn = table()
     drawn.add_column("mode", justify="right")
     for name in names:
-        drawn.add_column(f"{name} [{record['units']['length']}]", justify="right", overflow="fold")
+        drawn.add_column(f"{name} [{record['units']['length']}]", justify="right")
     drawn.add_column("")
     for mode in modes:
         places = ["  ".join(f"{value:.6g}" for value in _rounded(mode["joints"][name])) for name in names]
@@ -189,7 +189,7 @@ def _drive_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
     driven, left, of = counted(record["actuated"], "actuated joint"), record["undriven"], record["mobility"]
     text = f"{record['controllable']} of {_freedoms(of)} by {driven}"
     if left:
-        text += f"; {_freedoms(left)} left undriven"
+        text += f"; {_freedoms(left)} left unactuated"
         if record["output"] is not None:
             rest = record["output_undriven"]
             text += ", none of the output" if not rest else f", {rest} of the output"

@@ -18,6 +18,7 @@ from robokin.cli.records import poses_in
 from robokin.errors import InputError, did_you_mean, shown
 from robokin.mobility.trace import Trace
 from robokin.model import Mechanism
+from robokin.records.envelope import envelope
 from robokin.spatial import rpy_from_rotation
 from robokin.units import Units
 
@@ -111,8 +112,8 @@ class Motion:
     def head(self) -> dict[str, Any]:
         """What all configurations share."""
         mechanism = self.trace.mechanism
-        return {"mechanism": mechanism.id, "units": self.units.as_record(), "driven": self.trace.driven,
-                "closed": self.trace.closed}  # fmt: skip
+        head = envelope("mechanism", mechanism.id, self.units)
+        return head | {"driven": self.trace.driven, "closed": self.trace.closed}
 
     def written(self, kind: str) -> bytes:
         """The motion in a format."""

@@ -6,34 +6,42 @@ from typing import Annotated
 
 import typer
 
+from robokin.cli.completion import robots, words
 from robokin.errors import InputError, did_you_mean, or_list
 from robokin.units import METRES, RADIANS, Units
 
-
-def complete_names(incomplete: str) -> list[str]:
-    """Names of the library that start so, for the shell's completion."""
-    from robokin.description.library import library_names
-
-    return [name for name in library_names() if name.startswith(incomplete)]
-
+FORMATS = ("table", "json", "jsonl", "csv")
+ORIENTATIONS = ("rpy", "quaternion", "euler", "matrix")
 
 RobotArgument = Annotated[
     str,
     typer.Argument(
         metavar="ROBOT",
         help="A name of `robokin list`, or a path to a description.",
-        autocompletion=complete_names,
+        autocompletion=robots,
         show_default=False,
     ),
 ]
 FormatOption = Annotated[
     str | None,
-    typer.Option("--format", "-f", metavar="FORMAT", help="table, json, jsonl or csv.  [default: table]"),
+    typer.Option(
+        "--format",
+        "-f",
+        metavar="FORMAT",
+        help="table, json, jsonl or csv.  [default: table]",
+        autocompletion=words(*FORMATS),
+    ),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Short for -f json.", show_default=False)]
-AngleOption = Annotated[str | None, typer.Option("--angle", metavar="UNIT", help="Angles in deg or rad, in and out.")]
+AngleOption = Annotated[
+    str | None,
+    typer.Option("--angle", metavar="UNIT", help="Angles in deg or rad, in and out.", autocompletion=words(*RADIANS)),
+]
 LengthOption = Annotated[
-    str | None, typer.Option("--length", metavar="UNIT", help="Lengths in m, cm, mm or in, in and out.")
+    str | None,
+    typer.Option(
+        "--length", metavar="UNIT", help="Lengths in m, cm, mm or in, in and out.", autocompletion=words(*METRES)
+    ),
 ]
 SetOption = Annotated[
     list[str] | None,
@@ -52,12 +60,14 @@ AsOption = Annotated[
     typer.Option(
         "--as",
         metavar="KIND",
-        help="How to say the orientation: rpy, quaternion, euler (Z Y Z) or matrix.  [default: rpy]",
+        help="How to say the orientation: rpy, quaternion (w x y z), quaternion-xyzw, euler (Z Y Z), rotvec, abc, wpr "
+        "or matrix.  [default: rpy]",
+        autocompletion=words(*ORIENTATIONS),
     ),
 ]
-
-FORMATS = ("table", "json", "jsonl", "csv")
-ORIENTATIONS = ("rpy", "quaternion", "euler", "matrix")
+DropOption = Annotated[
+    bool, typer.Option("--drop", help="Leave out columns of the input that are not understood, such as a time.")
+]
 
 
 def choose(value: str | None, choices: tuple[str, ...], option: str) -> str | None:
@@ -66,6 +76,13 @@ def choose(value: str | None, choices: tuple[str, ...], option: str) -> str | No
         return value
     hint = did_you_mean(value, choices)
     raise InputError(f"{option}: found '{value}', expected {or_list(choices)}{hint}")
+
+
+def orientation_kind(value: str | None) -> str | None:
+    """The way to say an orientation that --as asks for; None when it does not. Raises InputError."""
+    from robokin.tables.orientations import KINDS, SHORT
+
+    return choose(SHORT.get(value, value) if value else value, KINDS, "--as")
 
 
 def output_format(format: str | None, json: bool) -> str | None:

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from robokin.cli.arguments import in_units, joint_factors
 from robokin.cli.output.numbers import counted, show
 from robokin.cli.output.text import csv_header, csv_rows, json_document, json_line
-from robokin.cli.records import pose_columns, pose_table, poses_in
+from robokin.cli.records import poses_in
 from robokin.inverse.path import Event, Path
 from robokin.model import Robot
+from robokin.records.envelope import envelope
+from robokin.tables.orientations import pose_columns, pose_table
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -46,7 +48,7 @@ class PathAnswer:
         elif kind == "csv":
             yield csv_header(self.columns()) + csv_rows(self.rows())
         elif kind == "jsonl":
-            head = {"robot": self.robot.id, "units": self.units.as_record()}
+            head = envelope("robot", self.robot.id, self.units)
             yield b"".join(json_line({**head, **record}) for record in self.records())
         elif kind == "json":
             yield json_document(self.document())
@@ -81,8 +83,7 @@ class PathAnswer:
         """The whole path with its summary."""
         path, events = self.path, self.path.events
         return {
-            "robot": self.robot.id,
-            "units": self.units.as_record(),
+            **envelope("robot", self.robot.id, self.units),
             "kind": self.kind,
             "steps": path.steps,
             "complete": path.complete,

@@ -24,6 +24,7 @@ from robokin.kinematics.structure import structure_of
 from robokin.model import Robot
 from robokin.pictures.arm import arm_of, body_frames, line_of
 from robokin.pictures.arm_scene import Posture, Scene, usual_view
+from robokin.records.envelope import envelope
 from robokin.units import Units
 
 Array = NDArray[np.float64]
@@ -96,22 +97,36 @@ def _target(options: dict[str, str | None], robot: Robot, units: Units) -> Targe
         raise InputError(re.sub(rf"{next(iter(options))}\b", "--ik", str(error))) from None
 
 
-def asked(robot: Robot, units: Units, given: Sequence[Array], ik: str | None) -> Asked:
+def wanted_target(ik: str | None, options: dict[str, str | None], robot: Robot, units: Units) -> Target | None:
+    """The target of --ik, or of the options that `robokin ik` has; None without. Raises InputError for both."""
+    given = [name for name, value in options.items() if value is not None]
+    if ik is not None and given:
+        raise InputError(f"--ik and {given[0]} exclude each other, expected one of them")
+    if (ik is not None or given) and not robot.n:
+        raise InputError(f"{robot.name} has no joints, expected a robot that can move")
+    if ik is not None:
+        return target_of(ik, robot, units)
+    return parse_target(options, robot, units) if given else None
+
+
+def asked(robot: Robot, units: Units, given: Sequence[Array], target: Target | None) -> Asked:
     """What is drawn for configurations (n,) [rad | m] and a target.
 
     The first configuration is drawn solid, all others pale. With a target and no configuration the first solution
     is the solid one; where there is no solution, the nearest configuration is drawn with the solid one beside it.
     """
-    if ik is None:
+    if target is None:
         # A single arm needs no name beside it: its joint values stand below the title.
         labels = [values_text(q, robot, units) if len(given) > 1 else "" for q in given]
         return Asked(tuple(Posture(q, label, k > 0) for k, (q, label) in enumerate(zip(given, labels, strict=True))))
-    if not robot.n:
-        raise InputError(f"{robot.name} has no joints, expected a robot that can move")
-    target = target_of(ik, robot, units)
     if np.max(np.abs(target.T[:3, 3])) > FARTHEST:
-        raise InputError("--ik: the target is too far away for a picture, expected less")
+        raise InputError("the target is too far away for a picture, expected less")
     result = solve_many(robot, target.T[None], task=target.task)[0]  # type: ignore[arg-type]
+    return with_solutions(robot, units, given, target, result)
+
+
+def with_solutions(robot: Robot, units: Units, given: Sequence[Array], target: Target, result: Result) -> Asked:
+    """What is drawn for configurations (n,) [rad | m] and a target with its answer."""
     found = [(solution.q, solution.branch) for solution in result.solutions[:MOST_GHOSTS]]
     notes = list(target.notes)
     if len(result.solutions) > MOST_GHOSTS:
@@ -120,10 +135,10 @@ def asked(robot: Robot, units: Units, given: Sequence[Array], ik: str | None) ->
     for k, (q, branch) in enumerate(found):
         postures.append(Posture(q, branch or f"solution {k + 1}", ghost=bool(given) or k > 0))
     if not found:
-        notes.append(f"--ik: no solution: {result.reason}")
+        notes.append(f"no solution: {result.reason}")
         if result.nearest is not None:
             gap = result.nearest.position_error / units.metres, result.nearest.angle_error / units.radians
-            label = f"nearest: off by {gap[0]:.4g} {units.length}, {gap[1]:.4g} {units.angle}"
+            label = f"nearest: position error {gap[0]:.4g} {units.length}, angle error {gap[1]:.4g} {units.angle}"
             postures.append(Posture(result.nearest.q, label, ghost=bool(given)))
     return Asked(tuple(postures), target, result, tuple(notes))
 
@@ -168,7 +183,8 @@ def answer(kind: str, scene: Scene, wanted: Asked) -> Iterator[bytes]:
     if kind == "table":
         yield _page(scene, wanted)
         return
-    arms = [_record(scene, posture) for posture in scene.postures]
+    document = arms_record(scene, wanted)
+    arms = document["arms"]
     if kind == "csv":
         rows = [
             [number, corner, *point]
@@ -177,14 +193,21 @@ def answer(kind: str, scene: Scene, wanted: Asked) -> Iterator[bytes]:
         ]
         yield csv_records(["arm", "corner", "x", "y", "z"], rows)
         return
-    head = {"robot": robot.id, "units": units.as_record()}
+    head = envelope("robot", robot.id, units)
     if kind == "jsonl":
         yield from (json_line({**head, **arm}) for arm in arms)
         return
-    target = None if scene.target is None else poses_in(scene.target.copy(), units).tolist()
-    result = wanted.result
-    more = {"target": target, "reachable": result and result.reachable, "reason": result and result.reason}
-    yield json_document({**head, **more, "arms": arms})
+    yield json_document(document)
+
+
+def arms_record(scene: Scene, wanted: Asked) -> dict[str, Any]:
+    """The document of `robokin plot` about an arm."""
+    target = None if scene.target is None else poses_in(scene.target.copy(), scene.units).tolist()
+    more: dict[str, Any] = {"target": target, "reachable": None, "reason": None}
+    if wanted.result is not None:
+        more |= {"reachable": wanted.result.reachable, "reason": wanted.result.reason}
+    arms = [_record(scene, posture) for posture in scene.postures]
+    return envelope("robot", scene.arm.robot.id, scene.units) | more | {"arms": arms}
 
 
 def _record(scene: Scene, posture: Posture) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 
+from robokin.cli.interruptions import in_order
 from robokin.workspace.stages import followed
 
 PATIENCE = 1.0
@@ -27,15 +28,18 @@ class Progress:
         self.began = time.monotonic()
         self.shown = 0.0
         self.first: int | None = None
+        self.interrupted = in_order()
 
     def __enter__(self) -> Progress:
         """The bar, not yet shown."""
+        self.interrupted.__enter__()
         return self
 
     def __exit__(self, *error: object) -> None:
         """Wipe the bar out."""
         if self.shown:
             self._write("\r\033[K")
+        self.interrupted.__exit__(None, None, None)
 
     def told(self, done: int, total: int) -> None:
         """`done` of `total` are done."""
@@ -66,9 +70,11 @@ class Stages:
         self.over = threading.Event()
         self.followed = followed()
         self.thread: threading.Thread | None = None
+        self.interrupted = in_order()
 
     def __enter__(self) -> Stages:
         """Begin to follow what is done within."""
+        self.interrupted.__enter__()
         self.work = self.followed.__enter__()
         if _terminal():
             self.thread = threading.Thread(target=self._show, daemon=True)
@@ -85,6 +91,7 @@ class Stages:
             from robokin.cli import say
 
             say(f"after {time.monotonic() - self.began:.0f} s: {self._state()}")
+        self.interrupted.__exit__(None, None, None)
 
     def _state(self) -> str:
         done, now = ", ".join(self.work.done) or "nothing", self.work.now

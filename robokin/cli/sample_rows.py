@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from robokin.cli.arguments import joint_factors
 from robokin.cli.output.text import csv_header, csv_rows, json_line
-from robokin.cli.records import ORIENTATION_COLUMNS, orientation
 from robokin.errors import InputError, or_list
 from robokin.kinematics.forward import forward_kinematics
+from robokin.records.envelope import envelope
+from robokin.tables.orientations import orientation, orientation_columns
 from robokin.units import Units
 from robokin.workspace.sampling import joint_values, positions, sample_count
 from robokin.workspace.sequence import Kind
@@ -72,7 +73,7 @@ class Samples:
     def columns(self) -> list[str]:
         """The names of a row's numbers; a PLY file has the position first, so that viewers find it."""
         q = [f"q{i}" for i in range(1, len(self.space.low) + 1)] if self.joints else []
-        turned = ORIENTATION_COLUMNS[self.orientation] if self.orientation else ()
+        turned = orientation_columns(self.orientation) if self.orientation else ()
         return ["x", "y", "z", *turned, *q] if self.kind == "ply" else [*q, "x", "y", "z", *turned]
 
     def header(self) -> bytes:
@@ -121,7 +122,7 @@ class Samples:
 
     def _lines(self, q: Array, p: Array, T: Array | None) -> bytes:
         """A JSON document a line."""
-        start = json_line({"robot": self.space.robot.id, "units": self.units.as_record()})[:-2]
+        start = json_line(envelope("robot", self.space.robot.id, self.units))[:-2]
         fields = [("q", _lists(q))] if self.joints else []
         fields.append(("position", _lists(p)))
         if T is not None:
@@ -130,7 +131,7 @@ class Samples:
             pose.append(("position", fields[-1][1]))
             for kind in dict.fromkeys(["rpy", "quaternion", str(self.orientation)]):
                 if kind != "matrix":
-                    pose.append((kind, _lists(orientation(T, kind, self.units))))
+                    pose.append((kind.replace("-", "_"), _lists(orientation(T, kind, self.units))))
             fields.append(("pose", [b"{%b}" % text for text in _documents(pose)]))
         return b"".join(b"%b, %b}\n" % (start, text) for text in _documents(fields))
 

@@ -6,12 +6,22 @@ from typing import Any
 
 from robokin.cli.arguments import in_units, joint_factors
 from robokin.cli.output.numbers import show
-from robokin.kinematics.singular import Singularity
+from robokin.kinematics.singular import Singularity, singular_configurations
 from robokin.kinematics.singular_equation import signed
+from robokin.kinematics.velocity import TaskName, motion_task
 from robokin.model import Robot
+from robokin.records.envelope import envelope
 from robokin.units import Units
 
 COLUMNS = ("name", "joints", "condition", "values", "example", "lost")
+
+
+def singular_record(robot: Robot, units: Units, task: TaskName | None) -> dict[str, Any]:
+    """The document of `robokin singular`."""
+    whole = motion_task(robot, task)
+    found = [singularity_record(robot, units, one) for one in singular_configurations(robot, task)]
+    head = envelope("robot", robot.id, units)
+    return head | {"task": whole.name, "full_rank": whole.dimension, "singularities": found}
 
 
 def singularity_record(robot: Robot, units: Units, one: Singularity) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from robokin.cli.output.sink import format_of, sink
-from robokin.cli.output.text import csv_records, encode, json_document, json_line
+from robokin.cli.output.text import csv_records, encode, json_document, json_line, page
 from robokin.errors import InputError
 from robokin.model import Robot
 from robokin.units import Units
@@ -60,5 +60,5 @@ def write_symbolic(robot: Robot, units: Units, form: str, output: str | None, *,
             document = json_document if form == "json" else json_line
             stream.write(document(symbolic_record(robot, units, symbolic)))
         else:
-            page = symbolic_latex if form == "latex" else symbolic_page
-            stream.write(encode(page(robot, units, symbolic)))
+            said = symbolic_latex if form == "latex" else symbolic_page
+            stream.write(page(said(robot, units, symbolic)))

@@ -9,6 +9,7 @@ from typing import Any
 from robokin.cli.output.columns import PAGE
 from robokin.cli.output.numbers import show
 from robokin.model import Robot
+from robokin.records.envelope import envelope
 from robokin.symbolic.matrices import SymbolicKinematics
 from robokin.symbolic.product import Matrix
 from robokin.symbolic.written import latex, latex_function, latex_name, written
@@ -24,8 +25,7 @@ BOUND = "\0"
 def symbolic_record(robot: Robot, units: Units, symbolic: SymbolicKinematics) -> dict[str, Any]:
     """The JSON document: every entry a text, every symbol a number or what it stands for."""
     record: dict[str, Any] = {
-        "robot": robot.id,
-        "units": units.as_record(),
+        **envelope("robot", robot.id, units),
         "matrices": [{"name": name, "matrix": _texts(matrix)} for name, matrix in symbolic.matrices.items()],
         "T": _texts(symbolic.T),
     }

@@ -7,16 +7,17 @@ import io
 import json
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.cli.arguments import parse_numbers
-from robokin.cli.target_rows import near_enough, pose_documents, pose_in_document, read_targets
+from robokin.cli import say
+from robokin.cli.arguments import parse_numbers, split_vector
 from robokin.description.expressions import Scope
-from robokin.description.transforms import evaluate_transform, pose_from_matrix
+from robokin.description.matrices import pose_from_matrix
+from robokin.description.transforms import evaluate_transform
 from robokin.errors import ExpressionError, InputError
+from robokin.files import open_input, read_up_to
 from robokin.model import Robot
 from robokin.spatial import (
     rotation_from_euler,
@@ -25,9 +26,14 @@ from robokin.spatial import (
     transform,
 )
 from robokin.spatial.rotations import DIGITS_LOST
+from robokin.tables.poses import near_enough
+from robokin.tables.targets import one_pose, pose_of
 from robokin.units import Units
 
 Array = NDArray[np.float64]
+
+MOST_OF_A_MATRIX = 1 << 20
+"""Bytes of a file with one pose: a page, were it written with a thousand digits."""
 
 LEVEL = 1e-9
 """Metres, and sines of an angle: what differs by less lies at one height."""
@@ -67,7 +73,7 @@ def parse_target(options: dict[str, str | None], robot: Robot, units: Units) -> 
         return _matrix(text, units)
     if kinds == ["--xy"]:
         return _planar(text, options.get("--phi"), robot, units)
-    p = parse_numbers(text, "--xyz", [False] * 3, units, "x, y, z") * units.metres
+    p = parse_place(text, "--xyz", robot, units)
     if not turns:
         return Target(_placed(np.eye(3), p, "--xyz", units), "position")
     R, task = _rotation(turns[0], options[turns[0]] or "", units)
@@ -103,23 +109,46 @@ def _quaternion(text: str, option: str, units: Units) -> Array:
     return values / length
 
 
-def _planar(text: str, phi: str | None, robot: Robot, units: Units) -> Target:
+def parse_place(text: str, option: str, robot: Robot, units: Units) -> Array:
+    """A place (3,) [m]: x, y, z, or x, y alone for an arm that moves in the plane of x and y.
+
+    Raises InputError that names the option.
+    """
+    if len(split_vector(text)) == 2 and (zero := flat_arm(robot)) is not None:
+        x, y = parse_numbers(text, option, [False] * 2, units, "x, y") * units.metres
+        return np.array([x, y, zero[2, 3]])
+    also = ", or x, y" if flat_arm(robot) is not None else ""
+    return parse_numbers(text, option, [False] * 3, units, f"x, y, z{also}") * units.metres
+
+
+def flat_arm(robot: Robot) -> Array | None:
+    """The pose (4, 4) [m] at zero of a planar arm that moves in the plane of x and y, None for all others."""
     from robokin.kinematics.forward import forward_kinematics
     from robokin.kinematics.structure import structure_of
 
     if structure_of(robot).arm != "planar":
-        raise InputError(f"--xy is for planar arms, and {robot.name} is none, expected --xyz")
-    x, y = parse_numbers(text, "--xy", [False] * 2, units, "x, y") * units.metres
-    # The arm's height and the tilt of its hand are the same at every configuration.
+        return None
+    # The arm's height and the tilt of its end effector are the same at every configuration.
     zero, ones = forward_kinematics(robot, np.array([np.zeros(robot.n), np.ones(robot.n)]))
-    if abs(zero[2, 3] - ones[2, 3]) > LEVEL or np.max(np.abs(zero[2, :3] - ones[2, :3])) > LEVEL:
+    tilted = abs(zero[2, 3] - ones[2, 3]) > LEVEL or np.max(np.abs(zero[2, :3] - ones[2, :3])) > LEVEL
+    return None if tilted else zero
+
+
+def _planar(text: str, phi: str | None, robot: Robot, units: Units) -> Target:
+    from robokin.kinematics.structure import structure_of
+
+    if structure_of(robot).arm != "planar":
+        raise InputError(f"--xy is for planar arms, and {robot.name} is none, expected --xyz")
+    zero = flat_arm(robot)
+    if zero is None:
         raise InputError(f"--xy: {robot.name} does not move in the plane of x and y, expected --xyz")
+    x, y = parse_numbers(text, "--xy", [False] * 2, units, "x, y") * units.metres
     p = np.array([x, y, zero[2, 3]])
     if phi is None:
         return Target(_placed(zero[:3, :3], p, "--xy", units), "position")
-    (angle,) = parse_numbers(phi, "--phi", [True], units, "the hand's angle to x") * units.radians
+    (angle,) = parse_numbers(phi, "--phi", [True], units, "the angle of the tool's x axis to x") * units.radians
     if np.hypot(zero[0, 0], zero[1, 0]) < LEVEL:
-        raise InputError(f"--phi: the x axis of {robot.name}'s hand is upright, expected --xyz and --rpy")
+        raise InputError(f"--phi: the x axis of {robot.name}'s tool frame is upright, expected --xyz and --rpy")
     turn = rotation_from_rpy([0.0, 0.0, angle - np.arctan2(zero[1, 0], zero[0, 0])])
     return Target(_placed(turn @ zero[:3, :3], p, "--xy", units), "pose")
 
@@ -135,7 +164,7 @@ def _matrix(text: str, units: Units) -> Target:
     inline = text.lstrip().startswith(("[", "{"))
     name = "--matrix" if inline else f"--matrix {text}"
     try:
-        T, note = _document(text, name, units) if inline else _matrix_file(Path(text), name, units)
+        T, note = _document(text, name, units) if inline else _matrix_file(text, name, units)
     except ValueError as error:
         raise InputError(f"{name}: {error}") from None
     return Target(T, "pose", (note,) if note else ())
@@ -146,16 +175,19 @@ def _document(text: str, name: str, units: Units) -> tuple[Array, str]:
         document = json.loads(text)
     except (ValueError, RecursionError):
         raise InputError(f"{name}: this is not JSON, expected [[…], […], […], […]]") from None
-    return pose_in_document(document, pose_documents(io.BytesIO(), name, units))
+    T, task, note = pose_of(document, units)
+    if task != "pose":
+        raise ValueError(f"found a target of the task {task}, expected a whole pose")
+    return T, note
 
 
-def _matrix_file(path: Path, name: str, units: Units) -> tuple[Array, str]:
+def _matrix_file(source: str, name: str, units: Units) -> tuple[Array, str]:
     """A file of one pose: an array, JSON, rows of numbers, or a CSV with a header, as `fk` and `frame` write them."""
-    try:
-        data = path.read_bytes()
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{name}: {reason}, expected [[…], …] or a file with a 4×4 matrix") from None
+    expected = "[[…], …] or a file with a 4×4 matrix"
+    with open_input(source, expected) as (stream, place):
+        data = read_up_to(stream, place, MOST_OF_A_MATRIX, expected)
+    if len(data) > MOST_OF_A_MATRIX:
+        raise InputError(f"{name}: found more than 1 MiB, expected {expected}")
     if not data.startswith(b"\x93NUMPY"):
         try:
             text = data.decode().removeprefix("\ufeff")
@@ -169,7 +201,4 @@ def _matrix_file(path: Path, name: str, units: Units) -> tuple[Array, str]:
             if len(rows) != 1:
                 T, note = pose_from_matrix(rows, units)
                 return near_enough(T, units), note
-    poses = [T for block in read_targets(str(path), units) for T in block]
-    if len(poses) != 1:
-        raise InputError(f"{name}: found {len(poses)} poses, expected one; --input {path} reads many")
-    return poses[0], ""
+    return one_pose(io.BytesIO(data), place, source, units, say), ""

@@ -9,6 +9,7 @@ import numpy as np
 from robokin.cli.arguments import in_units
 from robokin.cli.output.numbers import show
 from robokin.model import WheeledBase
+from robokin.records.envelope import envelope
 from robokin.units import Units
 
 
@@ -19,12 +20,11 @@ def wheel_record(base: WheeledBase, units: Units) -> dict[str, Any]:
         return float(in_units(np.array(value), factor))
 
     return {
-        "base": base.id,
+        **envelope("base", base.id, units),
         "name": base.name,
         "kind": "wheeled",
         "description": base.description,
         "source": base.source,
-        "units": units.as_record(),
         "steering": "parallel" if base.parallel else "independent",
         "parameters": dict(base.parameters),
         "wheels": [
@@ -51,7 +51,7 @@ def wheel_table(record: dict[str, Any]) -> bytes:
     drawn = table()
     numbers = ("x", "y", "angle", "radius", *(key for key in ("offset", "roller") if _some(record, key)))
     for name in ("wheel", "type", *numbers, "motor"):
-        drawn.add_column(name, justify="right" if name in numbers else "left", overflow="fold")
+        drawn.add_column(name, justify="right" if name in numbers else "left")
     for wheel in record["wheels"]:
         values = dict(zip("xy", wheel["at"], strict=True)) | wheel
         cells = ["" if values[name] is None else show(values[name]) for name in numbers]

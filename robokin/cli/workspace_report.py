@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from robokin.cli.arguments import parse_numbers
-from robokin.cli.output.sink import sink
+from robokin.cli.output.sink import Place, sink
 from robokin.cli.output.text import csv_records, json_document, json_line, json_list
 from robokin.cli.workspaces import WORDS, Cut, flat_row, workspace_record
 from robokin.errors import InputError, or_list
@@ -151,6 +151,7 @@ def require_drawable(plot: str) -> None:
     ending = Path(plot).suffix.lower()
     if ending not in PLOTS:
         raise InputError(f"--plot: found '{plot}', expected a name that ends with {or_list(PLOTS)}")
+    Place(plot, "--plot")
     if ending != ".html":
         from robokin.pictures.stills import require_matplotlib
 

@@ -80,7 +80,7 @@ def comparison_table(found: Sequence[Workspace], units: Units, cuts: Sequence[Se
     drawn = table()
     drawn.add_column("", style="cyan", no_wrap=True)
     for one in found:
-        drawn.add_column(one.space.robot.name, overflow="fold")
+        drawn.add_column(one.space.robot.name)
     for name in dict.fromkeys(name for column in columns for name in column):
         if name:
             drawn.add_row(name.strip(), *(column.get(name, "") for column in columns))
@@ -108,9 +108,9 @@ def _dexterity(dexterity: Dexterity, found: Workspace, units: Units) -> list[tup
         entries = [("orientations", f"{dexterity.orientations} {what}, {spacing} apart")]
         entries.append(("mean", f"{100.0 * dexterity.mean:.1f} % of them, over the reachable set"))
     sets = {
-        "some": (dexterity.some, "the reachable set"),
-        "more than one": (dexterity.several, "the lecture's dextrous set"),
-        "every one": (dexterity.every, "the standard dextrous set"),
+        "one or more": (dexterity.some, "the reachable workspace"),
+        "more than one": (dexterity.several, "the lecture's dexterous workspace"),
+        "every": (dexterity.every, "the dexterous workspace"),
     }
     if not dimension:
         holds = holds_at_a_point(dexterity).values()
@@ -161,7 +161,7 @@ def places_table(places: Sequence[Place], name: str, units: Units) -> bytes:
     for column in ("x", "y", "z"):
         drawn.add_column(column, justify="right", no_wrap=True)
     for column in ("reachable", "solutions", "orientations"):
-        drawn.add_column(column, overflow="fold")
+        drawn.add_column(column)
     for place in places:
         point = [show(float(value)) for value in place.point / units.metres + 0.0]
         drawn.add_row(

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from robokin.cli.arguments import joint_factors
 from robokin.pictures.outline import Outline
+from robokin.records.envelope import envelope
 from robokin.spatial import quaternion_from_rotation
 from robokin.units import Units
 from robokin.workspace.place import Place
@@ -20,8 +21,8 @@ Array = NDArray[np.float64]
 
 SETS = {
     "reachable": "some orientation",
-    "several": "more than one orientation (the lecture's dextrous workspace)",
-    "every": "every orientation on the grid (the standard dextrous workspace)",
+    "several": "more than one orientation (the lecture's dexterous workspace)",
+    "every": "every orientation on the grid (the dexterous workspace)",
 }
 """The three sets by name, with what a place needs to be in them."""
 
@@ -58,8 +59,7 @@ def workspace_record(found: Workspace, units: Units, cuts: Sequence[Cut] = ()) -
     space, extent = found.space, found.extent
     factors = joint_factors(space.robot, units)
     record: dict[str, Any] = {
-        "robot": space.robot.id,
-        "units": units.as_record(),
+        **envelope("robot", space.robot.id, units),
         "samples": found.samples,
         "seed": found.seed,
         "sampling": found.sampling,
@@ -156,8 +156,7 @@ def place_record(place: Place, robot: str, units: Units) -> dict[str, Any]:
     """Whether a place is reachable, and with which orientations."""
     reached = len(place.rotations)
     record: dict[str, Any] = {
-        "robot": robot,
-        "units": units.as_record(),
+        **envelope("robot", robot, units),
         "position": _lengths(place.point, units),
         "reachable": place.reachable,
         "reachable_is_proven": place.proven,

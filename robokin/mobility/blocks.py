@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Brief
 from robokin.mobility.chart import Chart, Edge
 from robokin.mobility.linkage import Linkage, State
 from robokin.mobility.screws import Element, moved_screws
@@ -43,8 +44,8 @@ class Spin:
     screw: Array
 
 
-@dataclass(frozen=True, eq=False)
-class Block:
+@dataclass(frozen=True, eq=False, repr=False)
+class Block(Brief):
     """A part of a linkage: its elements, their freedoms (f',), the spins that are held, and coordinates for the rest.
 
     bases: for each element the matrix (m, f) that takes its coordinates in the chart to its freedoms; middle (3,) and
@@ -268,10 +269,12 @@ def speeds_of(linkage: Linkage, state: State, block: Block, q: Array, tangent: A
         _, twists = block.chart.joint(k, q)
         w = twists[:, 3:]
         seen = np.concatenate([block.size * twists[:, :3] - np.cross(w, block.middle), w], axis=1).T @ tangent[own]
-        T[linkage.joint == number, : tangent.shape[1]] = np.linalg.lstsq(linkage.elements[number].screws.T, seen)[0]
+        T[linkage.joint == number, : tangent.shape[1]] = np.linalg.lstsq(
+            linkage.elements[number].screws.T, seen, rcond=None
+        )[0]
     for column, spin in enumerate(block.spins, start=tangent.shape[1]):
         for number in spin.elements:
             element, h = linkage.elements[number], state.joints[number]
             seen = moved_screws(h[None], spin.screw[None])[0] if element.b == spin.body else -spin.screw
-            T[linkage.joint == number, column] = np.linalg.lstsq(element.screws.T, seen)[0]
+            T[linkage.joint == number, column] = np.linalg.lstsq(element.screws.T, seen, rcond=None)[0]
     return T

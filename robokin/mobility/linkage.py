@@ -34,6 +34,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Brief
 from robokin.mobility.screws import Element, exponential, logarithm, moved_screws
 from robokin.spatial import invert
 
@@ -50,8 +51,8 @@ NEWTON_STEPS = 25
 """Steps to close the loops; near a regular configuration four are enough."""
 
 
-@dataclass(frozen=True, eq=False)
-class State:
+@dataclass(frozen=True, eq=False, repr=False)
+class State(Brief):
     """Where a linkage is: bodies (n, 4, 4) and joints (j, 4, 4), displacements from the reference, and how far each
     freedom has gone, values (f,) [rad | size]: exact where a joint's freedoms commute."""
 

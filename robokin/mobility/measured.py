@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Brief
 from robokin.mobility.reduced import Reduced, directions
 from robokin.mobility.zeros import spread
 
@@ -36,8 +37,8 @@ NOISE = 30.0
 """Dimensions wrong by the noise e leave singular values of some times e."""
 
 
-@dataclass(frozen=True, eq=False)
-class Branch:
+@dataclass(frozen=True, eq=False, repr=False)
+class Branch(Brief):
     """A branch of configurations through the pose: its dimension; kernel, that of the constraints all along it (larger
     than the dimension on a multiple branch); q (n,) a point of it and tangent (n, dimension) there; start (n,
     dimension): the directions in which it leaves the pose, on one side where they differ; times: how often the

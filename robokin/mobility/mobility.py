@@ -36,6 +36,7 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Brief
 from robokin.mobility.blocks import Block, blocks_of, speeds_of, state_of
 from robokin.mobility.branches import branches_of, isolation
 from robokin.mobility.linkage import RANK, Linkage, State
@@ -54,8 +55,8 @@ STILL = 1e-7
 """A joint whose part in every motion is less does not move."""
 
 
-@dataclass(frozen=True, eq=False)
-class Part:
+@dataclass(frozen=True, eq=False, repr=False)
+class Part(Brief):
     """What a block can do.
 
     values: the singular values of its equations, as parts of the greatest, descending; kernel: the instantaneous
@@ -82,8 +83,8 @@ class Part:
         return self.kernel - self.broken
 
 
-@dataclass(frozen=True, eq=False)
-class Course:
+@dataclass(frozen=True, eq=False, repr=False)
+class Course(Brief):
     """A branch of a linkage's configurations: its dimension, the elements that move in it, and the branch of each
     block."""
 
@@ -92,8 +93,8 @@ class Course:
     branches: tuple[Branch, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Motion:
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion(Brief):
     """What a linkage can do near its configuration.
 
     instantaneous, generic, finite: the three mobilities; values: the singular values of the blocks' equations at the

@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Brief
 from robokin.errors import InputError, did_you_mean, shown
 from robokin.mobility.assembly import Assembly, assembled, parts_of
 from robokin.mobility.columns import labels_of, of_pins, whole_rotations
@@ -44,8 +45,8 @@ SINGULAR_PART = 1e-9
 """A direction whose part in the kernel is less leads nowhere."""
 
 
-@dataclass(frozen=True, eq=False)
-class Trace:
+@dataclass(frozen=True, eq=False, repr=False)
+class Trace(Brief):
     """Configurations along a motion.
 
     labels: a name for each freedom; values: (m, f) joint values from the given configuration [rad | m]; turning: (f,)

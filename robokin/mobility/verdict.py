@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.errors import InputError, did_you_mean
+from robokin.brief import Answer
+from robokin.errors import InputError, InputTypeError, did_you_mean
+from robokin.expected import described, expect_whole
 from robokin.mobility.assembly import Assembly, assembled, missing_geometry, parts_of, space_fault
 from robokin.mobility.count import grubler
 from robokin.mobility.mobility import STILL, Motion, along, motion_of, velocities_of
@@ -15,13 +17,13 @@ from robokin.mobility.nearly import nearly_more
 from robokin.mobility.output import Output, kind_of, twist_basis
 from robokin.mobility.reasons import reason
 from robokin.mobility.roles import idle_freedoms, moving_joints, strained_joints
-from robokin.model import Mechanism
+from robokin.model import Mechanism, expect_mechanism
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class Mobility:
+@dataclass(frozen=True, eq=False, repr=False)
+class Mobility(Answer):
     """What is known of a mechanism's freedom.
 
     count: Grübler's; motion: from geometry, None without. mobility: the greatest dimension of the branches of
@@ -57,6 +59,11 @@ class Mobility:
     wandering: tuple[str, ...] = ()
     outputs: tuple[Output, ...] = ()
 
+    def __repr__(self) -> str:
+        """A line: the count beside the mobility, and the verdict."""
+        name, known = self.mechanism.id or self.mechanism.name, "not known" if self.mobility is None else self.mobility
+        return f"<mobility of {name}: {known}, Grübler's count {self.count}: {self.verdict}>"
+
 
 def mobility_of(mechanism: Mechanism, between: tuple[str, str] | None = None, seed: int = 0) -> Mobility:
     """The mobility of a mechanism, counted and true; `between` two links (the moving one first) or its output.
@@ -64,6 +71,7 @@ def mobility_of(mechanism: Mechanism, between: tuple[str, str] | None = None, se
     Nothing hangs on the seed any more; it is taken as before. Raises InputError for links that are not the mechanism's,
     and for axes that do not fit the mechanism's space.
     """
+    mechanism, _ = expect_mechanism(mechanism), expect_whole(seed, "seed", 0)
     fault = space_fault(mechanism)
     if fault:
         raise InputError(fault)
@@ -171,6 +179,8 @@ def _between(mechanism: Mechanism, between: tuple[str, str] | None) -> tuple[str
     """The link whose motion is asked for and the one that it is measured against."""
     if between is None:
         return (mechanism.output, mechanism.ground) if mechanism.output else None
+    if not isinstance(between, tuple | list) or len(between) != 2 or not all(isinstance(name, str) for name in between):
+        raise InputTypeError(f"between: found {described(between)}, expected two links, such as {mechanism.links[:2]}")
     for name in between:
         if name not in mechanism.links:
             hint = did_you_mean(name, mechanism.links) or f", expected one of {', '.join(mechanism.links[:12])}"

@@ -28,9 +28,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Answer
 from robokin.mobility.wheel_drives import Commands, commands_of
 from robokin.mobility.wheel_rows import RANK, Frame, kernel_of, rank_of, sliding_row
-from robokin.model import Wheel, WheeledBase
+from robokin.model import Wheel, WheeledBase, expect_wheeled
 
 Array = NDArray[np.float64]
 
@@ -41,8 +42,8 @@ SAMPLES = 12
 """Centres of rotation at which the steered wheels are looked at; their places mean nothing."""
 
 
-@dataclass(frozen=True)
-class Manoeuvrability:
+@dataclass(frozen=True, repr=False)
+class Manoeuvrability(Answer):
     """δ_m, δ_s and their sum; reachable: the dimension of what the base can get to (3: every place and heading).
 
     commands: what its motors command of them; note: what is special, or None.
@@ -53,6 +54,14 @@ class Manoeuvrability:
     reachable: int
     commands: Commands
     note: str | None
+    base: WheeledBase
+
+    def __repr__(self) -> str:
+        """A line: the three degrees, and what the motors command."""
+        return (
+            f"<{self.base.id or self.base.name}: mobility {self.mobility}, steerability {self.steerability}, "
+            f"manoeuvrability {self.manoeuvrability}, controllable {self.controllable}>"
+        )
 
     @property
     def manoeuvrability(self) -> int:
@@ -87,6 +96,7 @@ class Manoeuvrability:
 
 def manoeuvrability_of(base: WheeledBase) -> Manoeuvrability:
     """What the wheels let a base do, and what its motors command of that."""
+    base = expect_wheeled(base)
     frame = Frame.of(base.wheels)
     rows = [sliding_row(frame, wheel, wheel.angle) for wheel in base.wheels if wheel.type == "fixed"]
     fixed = np.array(rows).reshape(-1, 3)
@@ -120,7 +130,7 @@ def manoeuvrability_of(base: WheeledBase) -> Manoeuvrability:
         if base.parallel:
             note = "the steered wheels stay parallel: the base never turns"
     commands = commands_of(base, frame, situations, steering, free)
-    return Manoeuvrability(mobility, steerability, reachable, commands, note)
+    return Manoeuvrability(mobility, steerability, reachable, commands, note, base)
 
 
 def _twists_of(free: Array, steers: bool) -> list[Array]:

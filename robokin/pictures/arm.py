@@ -165,7 +165,8 @@ def _walk(robot: Robot) -> tuple[list[Array], list[Array], list[Mark]]:
             lines.append([T[:3, 3]])
         if robot.convention == "standard":
             # A link of a table runs along the joint's axis, then across it: its corner is drawn.
-            lines[-1].append(T[:3, 3] + row.d * T[:3, 2])
+            # The frame of a joint whose variable has the other sign has its z axis the other way.
+            lines[-1].append(T[:3, 3] + (row.sense if row.moves else 1) * row.d * T[:3, 2])
         T = T @ after
         lines[-1].append(T[:3, 3])
         marks.append(Mark(str(number), len(lines) - 1, T))
@@ -186,7 +187,8 @@ def _stroke(robot: Robot, i: int) -> tuple[float, float] | None:
     joint = robot.joints[i]
     if robot.revolute[i] or not np.all(np.isfinite(joint.limits)):
         return None
-    return joint.limits[0] + joint.offset, joint.limits[1] + joint.offset
+    start = joint.sense * joint.offset
+    return joint.limits[0] + start, joint.limits[1] + start
 
 
 def _centres(robot: Robot, lines: list[Array], starts: list[Array], height: float) -> list[float]:

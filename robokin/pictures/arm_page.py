@@ -86,7 +86,7 @@ def _joint(scene: Scene, i: int) -> dict[str, Any]:
     return {
         "name": joint.name,
         "type": joint.type.letter,
-        "offset": joint.offset if robot.revolute[i] else joint.offset / factor,
+        "offset": joint.sense * joint.offset / (1.0 if robot.revolute[i] else factor) + 0.0,
         "limits": [float(f"{end / factor:.12g}") for end in ends],
         "free": [bool(np.isinf(end)) for end in joint.limits],
     }

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import io
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.errors import InputError
 from robokin.mobility.gear_wheels import belt_lines, wheels_of
 from robokin.mobility.trace import Trace
 from robokin.model import Mechanism, MechanismJoint
-from robokin.pictures.stills import FREE, RESOLUTION, STYLE
+from robokin.pictures.stills import FREE, RESOLUTION, STYLE, require_matplotlib
 from robokin.units import Units
 
 if TYPE_CHECKING:
@@ -43,21 +41,13 @@ BLOCK = 0.05
 """Length of a slide's block, as a part of the longer side."""
 
 
-def require_matplotlib() -> None:
-    """Raise InputError, which says how to get it, where matplotlib is missing."""
-    if find_spec("matplotlib") is None:
-        raise InputError(
-            "mechanisms are drawn by matplotlib, which is not installed, expected it: pip install 'robokin[plot]'"
-        )
-
-
 def mechanism_picture(mechanism: Mechanism, trace: Trace | None, paths: Array | None, units: Units, kind: str) -> bytes:
     """A planar mechanism as assembled, as a file of type `kind`: png, svg or pdf.
 
     trace: its motion; the ways of its pins are drawn faintly. paths: (m, points, 3) [m] those of points, boldly.
     Raises InputError where matplotlib is missing.
     """
-    require_matplotlib()
+    require_matplotlib(f".{kind}")
     import matplotlib as mpl
     from matplotlib.figure import Figure
 

@@ -60,11 +60,14 @@ STYLE: dict[Any, Any] = {
 
 
 def require_matplotlib(ending: str) -> None:
-    """Raise InputError, which says how to get it, where matplotlib is missing."""
+    """Raise InputError, which says how to get it, where matplotlib is missing.
+
+    The advice holds however robokin was installed: from an index, a checkout or a wheel.
+    """
     if find_spec("matplotlib") is None:
         raise InputError(
-            f"a {ending} is drawn by matplotlib, which is not installed, expected it: "
-            "pip install 'robokin[plot]'; an .html is drawn without"
+            f"a {ending} is drawn by matplotlib, which is not installed: `pip install matplotlib` where robokin is "
+            "installed (with pipx `pipx inject robokin matplotlib`), or take an .html, which needs nothing more"
         )
 
 

@@ -15,7 +15,10 @@ from robokin.spatial.rotations import (
     rotation_from_axis_angle,
     rotation_from_euler,
     rotation_from_quaternion,
+    rotation_from_rotation_vector,
     rotation_from_rpy,
+    rotation_from_sequence,
+    rotation_vector_from_rotation,
     rpy_from_rotation,
 )
 from robokin.spatial.transforms import (
@@ -40,8 +43,11 @@ __all__ = [
     "rotation_from_axis_angle",
     "rotation_from_euler",
     "rotation_from_quaternion",
+    "rotation_from_rotation_vector",
     "rotation_from_rpy",
+    "rotation_from_sequence",
     "rotation_transform",
+    "rotation_vector_from_rotation",
     "rpy_from_rotation",
     "transform",
     "translation_transform",

@@ -179,6 +179,42 @@ def axis_angle_from_rotation(R: ArrayLike) -> tuple[Array, Array]:
     return axis, np.where(turns[..., 0], angle, 0.0)
 
 
+def rotation_from_rotation_vector(vector: ArrayLike) -> Array:
+    """Rotation about the direction of vectors (..., 3) by their length [rad]. Returns (..., 3, 3)."""
+    v = np.asarray(vector, dtype=np.float64)
+    greatest = np.max(np.abs(v), axis=-1, keepdims=True)  # the squares of great numbers would not be finite
+    turns = greatest > ZERO_AXIS
+    u = np.where(turns, v, [0.0, 0.0, 1.0]) / np.where(turns, greatest, 1.0)
+    angle = np.where(turns, greatest, 0.0)[..., 0] * np.linalg.norm(u, axis=-1)
+    R = rotation_from_axis_angle(u, angle)
+    x, y, z = np.moveaxis(np.where(turns, 0.0, v), -1, 0)
+    zero = np.zeros_like(x)
+    return R + _matrix(zero, -z, y, z, zero, -x, -y, x, zero)  # what is tiny is its own sine
+
+
+def rotation_vector_from_rotation(R: ArrayLike) -> Array:
+    """Rotation vectors (..., 3) [rad] of rotations R: (..., 3, 3): the axis times the angle, 0 to 180°.
+
+    At 180° both ends of the axis serve and the one whose first non-zero element is positive is given.
+    """
+    q = quaternion_from_rotation(R)
+    sine = np.linalg.norm(q[..., 1:], axis=-1, keepdims=True)
+    ratio = 2.0 * np.arctan2(sine, q[..., :1]) / np.where(sine > 0.0, sine, 1.0)
+    return np.asarray(q[..., 1:] * ratio)
+
+
+def rotation_from_sequence(axes: str, angles: ArrayLike) -> Array:
+    """Three turns one after another; angles: (..., 3) [rad]. Returns (..., 3, 3).
+
+    `axes` are three letters, each unlike the one before: in lower case each turn is about an axis that the
+    turns before it have moved (`zyz`: Rz Ry Rz), in upper case about a fixed one (`XYZ`: Rz Ry Rx).
+    """
+    angles = np.asarray(angles, dtype=np.float64)
+    letters = enumerate(axes.lower())
+    first, second, third = (rotation_from_axis_angle(np.eye(3)["xyz".index(a)], angles[..., k]) for k, a in letters)
+    return np.asarray(first @ second @ third if axes.islower() else third @ second @ first)
+
+
 def rotation_angle(R_a: ArrayLike, R_b: ArrayLike) -> Array:
     """Angle (...) [rad] by which R_b: (..., 3, 3) is turned against R_a: (..., 3, 3), 0 to 180°.
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from robokin.errors import InputError
-from robokin.model import Robot
+from robokin.expected import expect_choice, expect_flag, expect_number, expect_whole
+from robokin.model import Robot, expect_robot
 from robokin.workspace.extremes import extent
 from robokin.workspace.measure import REDUNDANT, measurable, measure, structural_length
 from robokin.workspace.membership import decided
@@ -39,10 +40,15 @@ def analyse_workspace(
 
     It is not called `workspace`, as is the package that it comes from.
     """
-    if samples < 1:
-        raise InputError(f"found {samples} samples, expected at least 1")
-    if sampling not in KINDS:
-        raise InputError(f"found sampling '{sampling}', expected {' or '.join(KINDS)}")
+    robot = expect_robot(robot)
+    samples, seed = expect_whole(samples, "samples", 1), expect_whole(seed, "seed", 0)
+    expect_choice(sampling, KINDS, "sampling")
+    cores = None if cores is None else expect_whole(cores, "cores", 1)
+    dextrous = expect_flag(dextrous, "dextrous")
+    if voxel is not None:
+        voxel = expect_number(voxel, "voxel", "a length [m] greater than 0")
+        if voxel <= 0.0:
+            raise InputError(f"voxel: found {voxel:g}, expected a length [m] greater than 0")
     space = space_of(robot)
     stage("bounds")
     bounds = extent(space, seed)

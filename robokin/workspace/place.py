@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robokin.brief import Brief
 from robokin.errors import InputError
 from robokin.inverse.analysis import Task
 from robokin.inverse.solve import solve_many
@@ -34,8 +35,8 @@ BEYOND_END = 1e-2, 1e-4, 1e-6
 """Parts of what is left to the next angle of the grid that are looked at beyond the end of a range."""
 
 
-@dataclass(frozen=True, eq=False)
-class Place:
+@dataclass(frozen=True, eq=False, repr=False)
+class Place(Brief):
     """What is known of one place: point (3,) [m], whether it is reachable, the group of the orientations that it
     may have and how many were tried; rotations (k, 3, 3): those of the tool that it can be reached with (of the
     sphere's group only the third column counts; where the group is "finite", one for each solution that differs).

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Answer, Brief
 from robokin.workspace.space import Space
 
 if TYPE_CHECKING:
@@ -32,8 +33,8 @@ class Measure:
     exact: bool = True
 
 
-@dataclass(frozen=True, eq=False)
-class Extent:
+@dataclass(frozen=True, eq=False, repr=False)
+class Extent(Brief):
     """How far the tool's origin comes: low, high (3,) along the world's axes [m]; least and greatest distance [m]
     from `origin` (3,), the base's. q_low, q_high (3, n) and q_least, q_greatest (n,) are where [rad | m]."""
 
@@ -48,8 +49,8 @@ class Extent:
     q_greatest: Array
 
 
-@dataclass(frozen=True, eq=False)
-class Dexterity:
+@dataclass(frozen=True, eq=False, repr=False)
+class Dexterity(Brief):
     """How freely the tool can be turned, place by place.
 
     group: what an orientation means for this arm: "SO(2)" (turns about one axis), "S2" (directions of the
@@ -77,8 +78,8 @@ class Dexterity:
     tried: int = 0
 
 
-@dataclass(frozen=True, eq=False)
-class Workspace:
+@dataclass(frozen=True, eq=False, repr=False)
+class Workspace(Answer):
     """What a robot can reach.
 
     space: its joints' box and the set's dimension; samples, seed, sampling: what the answers were made from.
@@ -100,3 +101,11 @@ class Workspace:
     dexterity: Dexterity | None = None
     notes: tuple[str, ...] = field(default=())
     cells: Cells | None = None
+
+    def __repr__(self) -> str:
+        """A line: the size with its bound."""
+        robot, size, power = self.space.robot, self.measure, ("", "", "²", "³")[self.space.dimension]
+        what = (
+            f"{self.space.quantity} {size.value:.6g} ± {size.error:.2g} m{power}" if self.space.dimension else "a point"
+        )
+        return f"<workspace of {robot.id or robot.name}: {what}>"

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from robokin.brief import Brief
 from robokin.errors import InputError
 from robokin.inverse.padding import joint_frames_of
 from robokin.kinematics.chain import Chain, chain_of, chain_size
@@ -31,8 +32,8 @@ PROBES = 64
 """Random configurations at which ranks and spans are looked at."""
 
 
-@dataclass(frozen=True, eq=False)
-class Space:
+@dataclass(frozen=True, eq=False, repr=False)
+class Space(Brief):
     """A robot's joint box and what its image under the tool's origin is like.
 
     low, high: (n,) the box [rad | m]; a revolute joint that can make a whole turn has just one, whose
@@ -108,7 +109,7 @@ def space_of(robot: Robot) -> Space:
 
 def _fixed(row: Joint, value: float) -> Joint:
     """A joint that stays at a value [rad | m], as a fixed row."""
-    at = value + row.offset
+    at = row.sense * value + row.offset
     if row.axis is not None:
         turns = row.type is JointType.REVOLUTE
         motion = rotation_transform(row.axis, at) if turns else translation_transform(at * row.axis)

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -19,6 +20,9 @@ import pytest
 
 import robokin
 from robokin.cli import run as run_here
+
+EXCERPT = re.compile(r"\n +[0-9]+ \| .*\n +\| +\^~*(?=\n|$)")
+"""The line of a description that an error shows, and the mark below it."""
 
 PROGRAM = [sys.executable, "-c", "from robokin.cli import main; main()"]
 
@@ -60,6 +64,11 @@ class Answer:
     def numbers(self) -> np.ndarray:
         """The rows of a CSV below its header."""
         return np.array([[float(cell) for cell in row] for row in self.csv[1:]]).reshape(-1, len(self.columns))
+
+    def numbers_of(self, column: str) -> list[float]:
+        """A column of a CSV."""
+        place = self.columns.index(column)
+        return [float(row[place]) for row in self.csv[1:]]
 
 
 def strict_json(text: str) -> Any:
@@ -115,6 +124,8 @@ def refused(answer: Answer, *fragments: str, status: int = 2) -> None:
     sentence, rest = answer.err.rstrip("\n"), answer.err[len(answer.err.rstrip("\n")) :]
     assert sentence.startswith("robokin: "), answer.err
     assert rest == "\n"
+    if EXCERPT.search(sentence):  # a mistake in a description is shown with its line, and so are those after it
+        sentence = EXCERPT.sub("", sentence)
     assert "\n" not in sentence
     assert "Traceback" not in sentence
     for fragment in fragments:

@@ -23,6 +23,7 @@ USAGE = {
     "a wheeled base": (["fk", "car", "--q", "1"], ["car is a wheeled base", "expected a robot"]),
     "a mechanism": (["fk", "four-bar", "--q", "1"], ["four-bar is a mechanism", "expected a robot"]),
     "an unknown option": ([*HOME, "--fromat", "json"], ["'--fromat'", "'--format'", "--help"]),
+    "an option of another command": ([*FK, "--quat", "1,0,0,0"], ["no option '--quat'; did you mean '--as'"]),
     "one dash": ([*FK, "-q", "home"], ["no option '-q'", "did you mean '--q'"]),
     "an option of no command": (["--jsn"], ["no option '--jsn'"]),
     "nothing after an option": ([*FK, "--q"], ["--q has nothing after it", "expected"]),
@@ -32,7 +33,7 @@ USAGE = {
     "two formats": ([*HOME, "--json", "-f", "csv"], ["exclude each other", "expected one of them"]),
     "an unknown angle unit": ([*HOME, "--angle", "degree"], ["--angle", "'degree'", "rad or deg", "mean 'deg'"]),
     "an unknown length unit": ([*HOME, "--length", "km"], ["--length", "'km'", "m, cm, mm or in"]),
-    "an unknown orientation": ([*HOME, "--as", "quat"], ["--as", "'quat'", "did you mean 'quaternion'"]),
+    "an unknown orientation": ([*HOME, "--as", "quaternoin"], ["--as", "'quaternoin'", "did you mean 'quaternion'"]),
     "a parameter without a value": ([*HOME, "--set", "a1"], ["--set", "'a1'", "expected NAME=VALUE"]),
     "a parameter that is not there": (["fk", "planar2r", "--q", "0,0", "--set", "a9=1"], ["'a9'", "did you mean 'a"]),
     "a parameter that is no number": (["fk", "planar2r", "--q", "0,0", "--set", "a1=x"], ["a1=x", "unknown name 'x'"]),
@@ -62,7 +63,7 @@ VALUES = {
     "a file as values": ([*FK, "--q", "joints.csv"], ["'joints.csv'", "--input joints.csv"]),
     "standard input and more": ([*FK, "--q", "-", "--q", "home"], ["--q -", "expected no other --q"]),
     "two sources": ([*HOME, "--input", "x.csv"], ["exclude each other"]),
-    "an input that is not there": ([*FK, "--input", "none.csv"], ["none.csv", "No such file", "expected"]),
+    "an input that is not there": ([*FK, "--input", "none.csv"], ["none.csv", "no such file", "expected"]),
     "an input that is a folder": ([*FK, "--input", "."], ["directory", "expected"]),
     "a batch for no joints": (["fk", "assembly", "--q", "-"], ["no joints"]),
 }
@@ -103,7 +104,7 @@ LINES = {
     "an open quote": ('"1,2,3,4,5,6\n', ["expected"]),
     "another header": ("q1,q2,q3,q4,q5,q6\n", ["'q1'", "expected"]),
     "a long word": ("9" * 5000 + "\n", ["found 1 value", "expected 6"]),
-    "no text": ("1,2,\udcff,4,5,6\n", ["expected UTF-8"]),
+    "no text": ("1,2,\0,4,5,6\n", ["expected UTF-8"]),
     "nothing but NUL": ("\0\n", ["expected"]),
     "semicolons": ("1;2;3;4;5;6\n", ["found 1 value", "expected 6"]),
 }
@@ -229,3 +230,51 @@ def test_any_words_get_an_answer(words):
     words = [word for word in words if not word.startswith(("-o", "--o", "-i", "--i", "."))]
     if words:
         answered(invoke(*words), 0, 2)
+
+
+SECOND_VALUES = [
+    ("path", "puma560", "--from", "home", "--to", "home", "--to", "0,0,0,0,0,0"),
+    ("fk", "puma560", "--q", "home", "--angle", "deg", "--angle=rad"),
+    ("fk", "puma560", "--q", "home", "-f", "csv", "--format", "json"),
+    ("fk", "puma560", "--q", "home", "-fcsv", "-fjson"),
+    ("ik", "puma560", "--xyz", "500,100,300", "--rpy", "0,0,0", "--rpy", "0,0,1"),
+    ("check", "fk", "puma560", "--q", "home", "--expect", "1,2,3", "--tol", "1", "--atol", "2"),
+]
+
+
+@pytest.mark.parametrize("words", SECOND_VALUES)
+def test_an_option_with_one_value_is_not_given_two(call, words):
+    answer = call(*words)
+    assert (answer.status, answer.out) == (2, b"")
+    assert "is given twice, with " in answer.err
+
+
+def test_the_same_value_twice_and_repeatable_options_are_taken(call):
+    assert call("fk", "puma560", "--q", "home", "--angle", "deg", "--angle", "deg").status == 0
+    assert call("fk", "puma560", "--q", "home", "--q", "0,0,0,0,0,0").status == 0
+    # A value may look like the name of an option.
+    assert call("fk", "puma560", "--q", "--angle", "--angle", "rad").err.startswith("robokin: --q: found")
+
+
+MEANT = [
+    (("forward", "puma560"), "'fk'"), (("inverse",), "'ik'"), (("mobility", "four-bar"), "'dof'"),
+    (("grade",), "'check'"), (("trajectory",), "'path'"), (("draw", "puma560"), "'plot'"),
+    (("jacobain",), "'jacobian'"),
+    (("help",), "robokin --help"), (("puma560",), "robokin show puma560"), (("Puma560",), "robokin show"),
+    (("ik", "puma560", "--quaternions", "1,0,0,0"), "'--quat'"), (("fk", "puma560", "--units", "mm"), "'--length'"),
+    (("check", "ik", "puma560", "--answers", "a.csv"), "'--input'"), (("fk", "puma560", "--joints", "1"), "'--q'"),
+    (("ik", "puma560", "--tol", "1"), "'--tol-position'"), (("path", "puma560", "--start", "home"), "'--from'"),
+    (("workspace", "puma560", "--out", "a.csv"), "'--output'"), (("fk", "puma560", "--radians"), "'--angle'"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("words", "meant"), MEANT)
+def test_what_other_tools_call_it_is_understood_as_a_question(call, words, meant):
+    answer = call(*words)
+    assert (answer.status, answer.out) == (2, b"")
+    assert meant in answer.err
+
+
+def test_nothing_is_suggested_that_is_not_near(call):
+    assert "did you mean" not in call("xyzzy").err
+    assert "did you mean" not in call("fk", "puma560", "--wurzelbrunft", "1").err

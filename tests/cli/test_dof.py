@@ -16,7 +16,7 @@ from robokin.model import Mechanism, Robot, WheeledBase
 
 from .conftest import refused
 
-KEYS = ["name", "space", "lambda", "links", "joints", "freedoms", "grubler", "constraints", "mobility",
+KEYS = ["schema", "name", "id", "space", "lambda", "links", "joints", "freedoms", "grubler", "constraints", "mobility",
         "mobility_basis", "overconstraints", "idle", "controllable", "holonomic", "note"]  # fmt: skip
 """The contract's keys, in its order; every answer has them."""
 
@@ -140,7 +140,7 @@ def test_count_and_truth_side_by_side(call):
     assert "F = λ(n − j − 1) + Σf = 6(6 − 6 − 1) + 6 = 0" in text
     assert "F = λ(n − 1) − ΣC     = 6(6 − 1) − 30    = 0" in text
     lines = text.splitlines()
-    row = lines[next(i for i, line in enumerate(lines) if line.startswith("count   truth")) + 2]
+    row = lines[next(i for i, line in enumerate(lines) if line.startswith("Grübler   mobility")) + 2]
     assert row.split(maxsplit=2)[:2] == ["0", "1"]
     assert "exceptional" in row
     assert "special dimensions: 1 of the constraints in space is redundant" in " ".join(text.split())
@@ -261,7 +261,7 @@ def test_a_nearly_mobile_one(call, tmp_path):
 
 def test_drives(call):
     text = call("dof", "6-sps").text
-    assert "6 freedoms left undriven, none of the output" in " ".join(text.split())
+    assert "6 freedoms left unactuated, none of the output" in " ".join(text.split())
     record = call("dof", "6-sps", "--json").json
     assert (record["mobility"], record["controllable"], record["holonomic"], record["idle"]) == (12, 6, False, 6)
 
@@ -407,7 +407,8 @@ def test_formats_of_a_trace_agree(call, tmp_path):
     assert [document["step"] for document in documents] == [*range(1, 8)]
     assert (whole["driven"], whole["closed"], whole["mechanism"]) == ("A", True, "slider-crank")
     for document, configuration, row in zip(documents, whole["configurations"], table, strict=True):
-        assert document == {key: whole[key] for key in ("mechanism", "units", "driven", "closed")} | configuration
+        head = {key: value for key, value in whole.items() if key != "configurations"}
+        assert document == head | configuration
         assert list(document["q"].values()) == row[:4].tolist()
         assert document["links"]["crank"][0][3] == row[4]
         assert np.ravel([point[:2] for point in document["points"]]).tolist() == row[-4:].tolist()
@@ -518,8 +519,8 @@ def test_a_picture_and_a_trace_at_once(call, tmp_path):
 
 
 def test_without_matplotlib_a_sentence_says_how_to_get_it(call, tmp_path, monkeypatch):
-    monkeypatch.setattr("robokin.pictures.mechanisms.find_spec", lambda name: None)
-    refused(call("dof", "four-bar", "--plot", tmp_path / "p.png"), "matplotlib", "pip install 'robokin[plot]'")
+    monkeypatch.setattr("robokin.pictures.stills.find_spec", lambda name: None)
+    refused(call("dof", "four-bar", "--plot", tmp_path / "p.png"), "matplotlib", "`pip install matplotlib`")
 
 
 # From Python -----------------------------------------------------------------------------------------

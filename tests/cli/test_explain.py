@@ -16,7 +16,7 @@ def test_the_page_shows_formulas_numbers_and_ends(call):
     answer = call(*PLANAR)
     assert answer.status == 0
     text = answer.text
-    assert "2 solutions, all there are" in text
+    assert "2 solutions, these are all" in text
     assert "The lesson: planar 3R arm\n\ngiven: a₁ = 20,  a₂ = 32,  a₃ = 10\n" in text
     assert (
         "     c₂ = (p_Wx² + p_Wy² − a₁² − a₂²) / (2·a₁·a₂)\n        = (25.6027² + 40.9097² − 20² − 32²) / (2·20·32)"

@@ -43,7 +43,7 @@ def rotation(kind, values):
 def test_the_document_has_the_contract_s_keys(call):
     answer = call("fk", "puma560", "--q", Q, "-f", "json")
     assert (answer.status, answer.err) == (0, "")
-    assert list(answer.json) == ["robot", "units", "q", "within_limits", "pose"]
+    assert list(answer.json) == ["schema", "robot", "id", "units", "q", "within_limits", "pose"]
     assert list(answer.json["pose"]) == ["matrix", "position", "rpy", "quaternion"]
     assert answer.json["robot"] == "puma560"
     assert answer.json["units"] == {"length": "mm", "angle": "deg"}
@@ -210,7 +210,7 @@ def test_csv_and_json_say_the_same_numbers(call):
 
 def test_frames_are_listed_on_demand(call):
     document = call("fk", "puma560", "--q", Q, "--frames", "--json").json
-    assert list(document) == ["robot", "units", "q", "within_limits", "pose", "frames"]
+    assert list(document) == ["schema", "robot", "id", "units", "q", "within_limits", "pose", "frames"]
     assert [frame["name"] for frame in document["frames"]] == ["1", "2", "3", "4", "5", "6"]
     assert [list(frame) for frame in document["frames"]] == [["name", "matrix"]] * 6
     robot = robokin.load("puma560")

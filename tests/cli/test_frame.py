@@ -13,7 +13,10 @@ from robokin.spatial import rotation_from_axis_angle, rotation_from_euler, rotat
 from .conftest import refused
 
 LECTURES = data("lectures.json")
-KEYS = ["expression", "units", "matrix", "n", "s", "a", "p", "position", "rpy", "euler", "quaternion", "axis_angle"]
+KEYS = [
+    "schema", "expression", "id", "units", "matrix", "n", "s", "a", "p", "position", "rpy", "euler", "quaternion",
+    "axis_angle", "rotvec",
+]  # fmt: skip
 H = "Trans(4,-3,7) Rot(y,90) Rot(z,90)"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 import robokin
 from robokin.cli.app import COMMANDS
 
-from .conftest import PROGRAM
+from .conftest import PROGRAM, environment
 
 
 def examples(call, command):
@@ -51,8 +52,8 @@ def test_the_examples_run(call, command, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     rows = b"0,0,0,0,0,0\n10,20,30,40,50,60\n90,0,90,0,0,0\n"
     Path("joints.csv").write_bytes(rows)
-    Path("robots").mkdir()
-    for name in ("arm.yaml", "robots/arm.yaml"):
+    Path("robots/arms").mkdir(parents=True)
+    for name in ("arm.yaml", "robots/arm.yaml", "robots/arms/arm.yaml"):
         Path(name).write_text("robokin: 1\nname: Arm\njoints:\n  - {type: R, a: 1}\n")
     assert len(examples(call, command)) >= 1
     for example in examples(call, command):
@@ -71,20 +72,50 @@ def test_the_examples_run(call, command, tmp_path, monkeypatch):
 
 
 def test_the_module_is_a_program_too(run):
-    import subprocess
-
     done = subprocess.run([PROGRAM[0], "-m", "robokin", "--version"], capture_output=True, text=True, check=True)
     assert done.stdout == f"robokin {robokin.__version__}\n"
 
 
-def test_a_shell_completes_commands_and_robots(run):
-    import subprocess
+def completed(words, **more):
+    """What bash offers for the last of some words."""
+    env = environment(_ROBOKIN_COMPLETE="complete_bash", COMP_WORDS=words, COMP_CWORD=str(len(words.split(" ")) - 1))
+    done = subprocess.run(PROGRAM, capture_output=True, text=True, check=False, env=env, **more)
+    assert done.stderr == ""
+    return done.stdout.split()
 
-    from .conftest import environment
 
-    def completed(words):
-        env = environment(_ROBOKIN_COMPLETE="complete_bash", COMP_WORDS=words, COMP_CWORD=str(len(words.split()) - 1))
-        return subprocess.run(PROGRAM, capture_output=True, text=True, check=False, env=env).stdout.split()
-
+def test_a_shell_completes_commands_and_robots():
     assert completed("robokin f") == ["fk", "frame"]
     assert "puma560" in completed("robokin fk puma5")
+    assert "scorbot" in completed("robokin workspace scara --compare scor")
+
+
+def test_a_shell_completes_what_options_take(tmp_path):
+    assert completed("robokin fk puma560 -f ") == ["table", "json", "jsonl", "csv"]
+    assert completed("robokin fk puma560 --length c") == ["cm"]
+    assert completed("robokin ik puma560 --method a") == ["auto", "analytic"]
+    assert completed("robokin fk puma560 --q h") == ["home"]
+    assert completed("robokin path puma560 --from h") == ["home"]
+    assert completed("robokin fk no-such-robot --q h") == []
+    (tmp_path / "my arm.yaml").write_text("robokin: 1\nname: A\njoints:\n  - {type: R, a: 1}\nposes: {up: [90]}\n")
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "m.txt").write_text("")
+    offered = completed("robokin fk m", cwd=tmp_path)
+    assert {"mine/", "my", "arm.yaml"} <= set(offered)
+    assert "m.txt" not in offered
+
+
+WORDS = {"--format": ("fk", "puma560"), "--angle": ("fk", "puma560"), "--length": ("fk", "puma560"),
+         "--as": ("fk", "puma560"), "--method": ("ik", "puma560"), "--frame": ("jacobian", "puma560"),
+         "--task": ("jacobian", "puma560"), "--sampling": ("workspace", "planar2r")}  # fmt: skip
+
+
+@pytest.mark.parametrize("option", WORDS)
+def test_what_is_offered_is_accepted(call, option):
+    command, robot = WORDS[option]
+    more = {"ik": ("--xyz", "500,100,300"), "workspace": ("-n", "64")}.get(command, ("--q", "home"))
+    offered = completed(f"robokin {command} {robot} {option} ")
+    assert len(offered) >= 2
+    for word in offered:
+        answer = call(command, robot, *more, option, word)
+        assert answer.status == 0, answer.err

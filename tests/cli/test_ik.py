@@ -21,8 +21,8 @@ from .conftest import PROGRAM, environment, poses_of, refused
 REACHED = "Trans(500,100,300) RPY(180,0,45)"
 ARGUMENTS = ["--xyz", "500,100,300", "--rpy", "180,0,45"]
 KEYS = [
-    "robot", "units", "target", "reachable", "complete", "basis", "certificate", "counts", "families", "method",
-    "reason", "solutions", "nearest",
+    "schema", "robot", "id", "units", "target", "reachable", "complete", "basis", "certificate", "counts", "families",
+    "method", "reason", "solutions", "nearest",
 ]  # fmt: skip
 SOLUTION = ["q", "branch", "within_limits", "position_error", "angle_error"]
 COLUMNS = (
@@ -252,9 +252,9 @@ def test_a_free_joint_is_told(call):
         assert solution["q"][4] == pytest.approx(30)
     answer = call("ik", *arguments)
     assert max(map(len, answer.lines)) <= 80
-    assert answer.lines[1].startswith("4 solutions, all there are but for the value of q5")
+    assert answer.lines[1].startswith("4 solutions, these are all (any value of q5)")
     assert answer.lines[-1] == "free: q5 may have any value; each posture is listed once"
-    assert call("ik", *arguments, "--max", "2").lines[1].startswith("2 solutions of all 4 but for the value of q5")
+    assert call("ik", *arguments, "--max", "2").lines[1].startswith("2 solutions of all 4 (any value of q5)")
 
 
 def test_a_redundant_arm_is_told(call):
@@ -313,7 +313,7 @@ def test_of_a_position_no_angle_is_off(call):
     assert "no solution: out of reach" in text
     # The arm stretched out: upper arm, forearm with its offset a3, across the shoulder's d2, and the hand's d6.
     reach = math.hypot(431.8 + math.hypot(20.32, 433.07), 149.09) + 56.25
-    off = float(re.search(r"off by ([\d.]+) mm", text)[1])
+    off = float(re.search(r"position error ([\d.]+) mm", text)[1])
     assert off == pytest.approx(3000 - reach, abs=2e-3)  # a millionth of the arm's size
     assert " deg" not in text.splitlines()[-1]
 
@@ -325,7 +325,7 @@ def test_the_table(call):
     answer = call("ik", "puma560", *ARGUMENTS)
     assert answer.lines[0] == "PUMA 560  lengths in mm, angles in deg"
     verdict, _, rest = answer.text.partition("\n\n")
-    assert re.search(r"\d solutions, all there are.* \(spherical wrist\)$", " ".join(verdict.splitlines()))
+    assert re.search(r"\d solutions, these are all.* \(spherical wrist\)$", " ".join(verdict.splitlines()))
     assert rest.splitlines()[0].split() == ["#", *(f"q{i}" for i in range(1, 7)), "shoulder", "elbow", "wrist"]
     assert max(map(len, answer.lines)) <= 80
 
@@ -351,7 +351,7 @@ def test_lines_and_rows(call):
     for number, (row, solution) in enumerate(zip(rows.csv[1:], document["solutions"], strict=True), start=1):
         assert row[:2] == ["1", str(number)]
         assert [float(cell) for cell in row[2:8]] == solution["q"]
-        assert row[8:10] == [solution["branch"], "true"]
+        assert row[8:10] == [solution["branch"].replace(", ", " / "), "true"]
         assert [float(cell) for cell in row[10:12]] == [solution["position_error"], solution["angle_error"]]
         assert row[12] == ""
 
@@ -390,8 +390,9 @@ def test_bare_rows_comments_and_quoted_headings(call, poses):
     for kind, count in (("rpy", 6), ("quaternion", 7), ("matrix", 16)):
         rows = [line.split(b",")[-count:] for line in poses("--as", kind).splitlines()[1:]]
         bare = b"# poses\n\n" + b"\n".join(b",".join(row) for row in rows)
+        told = ["--as", kind] if count == 7 else []
         for text in (bare, b"\xef\xbb\xbf" + bare.replace(b"\n", b"\r\n"), bare.replace(b",", b" ")):
-            found = call("ik", "puma560", "-i", "-", "-f", "csv", stdin=text)
+            found = call("ik", "puma560", "-i", "-", *told, "-f", "csv", stdin=text)
             assert (found.status, found.err, len(found.csv)) == (0, "", len(expected))
     quoted = poses().replace(b"q1,", b'"q1",').replace(b"roll", b'"roll"')
     assert call("ik", "puma560", "-i", "-", "-f", "csv", stdin=quoted).csv == expected
@@ -409,7 +410,8 @@ def test_json_lines_and_arrays(call, joints, poses, tmp_path):
         assert call("fk", "puma560", "--q", "-", "--as", kind, "-o", path, stdin=joints).status == 0
         sources += [path.read_bytes(), npy(np.asfortranarray(np.load(path)))]
     for k, source in enumerate(sources):
-        answer = call("ik", "puma560", "-i", "-", "-f", "csv", stdin=source)
+        told = ["--as", "quaternion"] if k >= len(sources) - 2 else []
+        answer = call("ik", "puma560", "-i", "-", *told, "-f", "csv", stdin=source)
         assert (answer.status, answer.err) == (0, ""), k
         for row, wanted in zip(answer.csv[1:], expected[1:], strict=True):
             assert row[:2] == wanted[:2]
@@ -474,7 +476,9 @@ def test_csv_and_lines_say_the_same(call, rng):
     rows = call("ik", "puma560", "-i", "-", "-f", "csv", stdin=stdin)
     documents = call("ik", "puma560", "-i", "-", "-f", "jsonl", stdin=stdin).jsonl
     assert rows.status == 0
-    flat = [[str(i), s["q"], s["branch"]] for i, d in enumerate(documents, 1) for s in d["solutions"]]
+    flat = [
+        [str(i), s["q"], s["branch"].replace(", ", " / ")] for i, d in enumerate(documents, 1) for s in d["solutions"]
+    ]
     assert [[row[0], [float(cell) for cell in row[2:8]], row[8]] for row in rows.csv[1:]] == flat
     assert len(documents) == 1500
     for values, document in zip(q[:200].tolist(), documents, strict=False):
@@ -587,7 +591,7 @@ WRONG = {
     "a great integer": (["--matrix", f"[[1,0,0,1{'0' * 400}],[0,1,0,2],[0,0,1,3],[0,0,0,1]]"], ["--matrix"]),
     "words in a matrix": (["--matrix", '[["a"]]'], ["--matrix", "numbers"]),
     "no JSON": (["--matrix", "[[1,0"], ["--matrix", "not JSON"]),
-    "no such file": (["--matrix", "none.json"], ["none.json", "No such file"]),
+    "no such file": (["--matrix", "none.json"], ["none.json", "no such file"]),
     "a wrong unit": ([*ARGUMENTS, "--length", "km"], ["--length", "km"]),
     "max 0": ([*ARGUMENTS, "--max", "0"], ["--max", "1 or more"]),
     "max of many digits": ([*ARGUMENTS, "--max", "9" * 5000], ["--max", "digits"]),
@@ -598,7 +602,7 @@ WRONG = {
     "two tolerances": ([*ARGUMENTS, "--tol-angle", "1,2"], ["--tol-angle", "2 values"]),
     "nowhere": ([*ARGUMENTS, "-o", "none/q.csv"], ["none/q.csv", "No such file"]),
     "an ending": ([*ARGUMENTS, "-o", "q.txt"], ["q.txt", ".npy"]),
-    "no input": (["--input", "none.csv"], ["none.csv", "No such file"]),
+    "no input": (["--input", "none.csv"], ["none.csv", "no such file"]),
     "a directory": (["--input", "."], ["directory"]),
     "a directory of a matrix": (["--matrix", "."], ["directory"]),
 }
@@ -631,12 +635,12 @@ WRONG_LINES = {
     "a last row": ((MATRIX.strip()[:-1] + "2\n"), ["line 1", "last row 0 0 0 2"]),
     "a quaternion": (("x,y,z,qw,qx,qy,qz\n1,2,3,1,0,0,0\n1,2,3,1,0,0,1\n"), ["line 3", "length 1.41421"]),
     "pi in degrees": ((ROW + "1,2,3,pi,0,0\n"), ["line 2", "pi"]),
-    "other columns": (("x,y,z\n1,2,3\n"), ["line 1", "x, y, z, roll, pitch, yaw"]),
+    "other columns": (("x,y,zz\n1,2,3\n"), ["line 1", "x, y, z with roll, pitch, yaw"]),
     "JSON": (('{"matrix": 3}\n'), ["line 1", "4×4"]),
     "no JSON": (("[1,2,3,4,5,6]\n[1,2\n"), ["line 2", "not JSON"]),
     "no pose": (('[1,2,3,4,5,6]\n\n{"q": [1]}\n'), ["line 3", "no matrix"]),
     "units": (('{"units": "m", "matrix": []}\n'), ["line 1", "units"]),
-    "a position": (('{"target": {"task": "position", "matrix": []}}\n'), ["line 1", "position"]),
+    "a position": (('{"target": {"task": "place", "matrix": []}}\n'), ["line 1", "place", "expected pose, position"]),
 }
 
 
@@ -705,3 +709,10 @@ def test_python_and_the_shell_take_the_same_matrices(call, part):
     python = np.array([solution.q for solution in robokin.solve_ik(robot, T, limits=False).solutions])
     assert len(shell) > 0
     assert np.allclose(np.deg2rad(shell), python, atol=1e-9)
+
+
+def test_a_target_far_beyond_the_plane_of_an_arm_has_a_nearest_configuration(call):
+    """At poses close by there is no complex solution either to begin a path from."""
+    answer = call("ik", "planar2r", "--xyz", "1,-45,-0.6729246136411673", "--length", "cm", "--json")
+    assert answer.status == 3
+    assert answer.json["nearest"] is not None

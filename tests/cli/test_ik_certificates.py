@@ -124,7 +124,7 @@ def test_all_and_why(shown):
         regular(complete=True, basis="counted", certificate="8 of 8 complex solutions found, 8 real"), "--no-limits"
     )
     assert answer.lines[1:4] == [
-        "8 solutions, all there are: 8 of 8 complex solutions found, 8 real",
+        "8 solutions, these are all: 8 of 8 complex solutions found, 8 real",
         "(spherical wrist)",
         "",
     ]
@@ -146,7 +146,7 @@ def test_a_cut_list_says_of_how_many():
     )  # fmt: skip
     why = "8 of 8 complex solutions found, 5 real (spherical wrist)"
     assert verdict(known).replace("\xa0", " ") == f"3 solutions of all 4: {why}"
-    assert verdict(known, (5,)).startswith("3 solutions of all 4 but for the value of q5: ")
+    assert verdict(known, (5,)).startswith("3 solutions of all 4 (any value of q5): ")
     assert verdict(known, turns=True).startswith("3 solutions of all 9, full turns included: ")
     assert verdict(known, held="q1 held at 2").startswith("3 solutions with q1 held at 2 of all 4: ")
     without_limits = regular(3, complete=False, all_known=True, counts={"closing": 5, "listed": 3})
@@ -168,17 +168,17 @@ def test_a_self_motion_whose_solution_was_cut_away_has_none(call):
 
 
 def test_a_result_without_a_certificate_reads_as_before():
-    assert verdict(regular(complete=True)).replace("\xa0", " ") == "8 solutions, all there are (spherical wrist)"
+    assert verdict(regular(complete=True)).replace("\xa0", " ") == "8 solutions, these are all (spherical wrist)"
 
 
 def test_a_solution_that_stands_for_a_self_motion_is_counted_as_that():
     said = verdict(straight(arc(STRAIGHT, TURNED)))
-    assert said.startswith("2 solutions and 1 self-motion, all there are: 8 paths from two starts ended")
+    assert said.startswith("2 solutions and 1 self-motion, these are all: 8 paths from two starts ended")
     said = verdict(straight(arc(STRAIGHT, TURNED), complete=False))
     assert said.startswith("2 solutions and 1 self-motion, there may be more: 1 of 8 paths was lost")
     # Where the limits leave one configuration of it, or none, it is a solution as others are.
-    assert verdict(straight(arc(STRAIGHT))).startswith("3 solutions, all there are: ")
-    assert verdict(straight()).startswith("3 solutions, all there are: ")
+    assert verdict(straight(arc(STRAIGHT))).startswith("3 solutions, these are all: ")
+    assert verdict(straight()).startswith("3 solutions, these are all: ")
 
 
 def test_a_self_motion_outside_the_limits_is_not_told(shown):

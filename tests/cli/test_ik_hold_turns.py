@@ -59,12 +59,12 @@ def test_turns_in_every_format(call, tmp_path):
     rows = call(*UR5E, "--turns", "-f", "csv")
     assert rows.columns == call(*UR5E, "-f", "csv").columns
     assert [[float(cell) for cell in row[2:8]] for row in rows.csv[1:]] == values(turned)
-    assert [row[8] for row in rows.csv[1:]] == [solution["branch"] for solution in turned["solutions"]]
+    assert [row[8] for row in rows.csv[1:]] == [s["branch"].replace(", ", " / ") for s in turned["solutions"]]
     path = tmp_path / "q.npy"
     assert call(*UR5E, "--turns", "-o", path).status == 0
     assert np.load(path)[0].tolist() == values(turned)
     table = call(*UR5E, "--turns")
-    assert table.lines[1].startswith("256 solutions, full turns included, all there are")
+    assert table.lines[1].startswith("256 solutions, full turns included, these are all")
     assert max(map(len, table.lines)) <= 80
     assert sum(line.split()[0].isdigit() for line in table.lines[5:] if line) == 256
 
@@ -110,7 +110,7 @@ def test_joints_without_limits_are_not_turned_and_that_is_said(call, tmp_path):
         "  - {type: R, a: 1}\n  - {type: R, a: 1, limits: [-360, 360]}\n  - {type: R, a: 0.3}\n"
     )
     answer = call("ik", path, "--xy", "1,1", "--phi", "20", "--turns")
-    assert answer.lines[1].startswith("4 solutions, full turns included, all there are")
+    assert answer.lines[1].startswith("4 solutions, full turns included, these are all")
     assert answer.lines[-1] == "full turns: q1 and q3 have no limits and are not turned"
     held = call("ik", path, "--xy", "1,1", "--hold", "q1=0", "--turns")
     assert held.lines[-1] == "full turns: q3 has no limits and is not turned"
@@ -150,7 +150,7 @@ def test_a_held_joint_is_in_the_document_and_in_the_sentence(call):
         assert np.allclose(poses_of("panda", solution["q"]), document["target"]["matrix"], rtol=0, atol=1e-6)
     text = call(*PANDA, "--hold", "q7=20").lines[1]
     count = len(document["solutions"])
-    assert text.startswith(f"{count} solution{'s' if count > 1 else ''} with q7 held at 20, all there are")
+    assert text.startswith(f"{count} solution{'s' if count > 1 else ''} with q7 held at 20, these are all")
 
 
 def test_the_held_value_has_the_digits_that_were_asked_for(call):

@@ -11,7 +11,7 @@ from .conftest import refused
 
 Q = "10,20,30,40,50,60"
 KEYS = [
-    "robot", "units", "jacobian_units", "q", "frame", "task", "jacobian", "rank", "full_rank", "size",
+    "schema", "robot", "id", "units", "jacobian_units", "q", "frame", "task", "jacobian", "rank", "full_rank", "size",
     "singular_values", "manipulability", "condition", "singular_direction", "null_space_joints",
 ]  # fmt: skip
 

@@ -169,7 +169,7 @@ def test_nobody_reads(command):
         ("fk puma560 --q home", ">&-", 2, "standard output is closed"),
         ("fk puma560 --q -", "<&-", 2, "standard input is closed"),
         ("fk puma560 --q home", "<&-", 0, ""),
-        ("--version", ">&-", 0, ""),
+        ("--version", ">&-", 2, "standard output is closed"),
     ],
 )
 def test_a_stream_may_be_closed_from_the_start(tmp_path, command, closed, status, sentence):

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import robokin
+
 from .conftest import poses_of, refused
 
 START, END = "90,-30,60,0,40,0", "60,-20,70,10,30,0"
@@ -47,7 +49,8 @@ def test_rows_are_the_same_in_every_format(call, tmp_path):
 def test_a_path_is_legal_input_of_fk(call):
     table = call(*FROM, "--to", END, "--steps", "5", "-f", "csv")
     poses = call("fk", "puma560", "-i", "-", "-f", "csv", stdin=table.out)
-    assert np.allclose(poses.numbers, table.numbers[:, 1:], atol=1e-9)
+    assert poses.columns == table.columns  # the time goes through
+    assert np.allclose(poses.numbers, table.numbers, atol=1e-9)
 
 
 def test_the_ends_of_a_line(call):
@@ -132,3 +135,22 @@ def test_tables_fit_a_page(call):
 )
 def test_what_is_wrong_is_said(call, arguments, fragments):
     refused(call("path", *arguments), *fragments)
+
+
+def test_a_path_ends_at_euler_angles_and_at_an_approach(call):
+    start = ("path", "puma560", "--from", "90,-30,60,0,40,0", "--no-limits", "--json")
+    by_rpy = call(*start, "--xyz", "-300,700,200", "--rpy", "0,90,30").json
+    by_euler = call(*start, "--xyz", "-300,700,200", "--euler", "30,90,0").json
+    np.testing.assert_allclose(by_euler["path"][-1]["q"], by_rpy["path"][-1]["q"], atol=1e-9)
+    for more in ((), ("--line",)):
+        path = call(*start, "--xyz", "-300,700,200", "--approach", "0,0,-1", *more).json["path"]
+        T = robokin.forward_kinematics(robokin.load("puma560"), np.radians(path[-1]["q"]))
+        np.testing.assert_allclose(T[:3, 2], [0.0, 0.0, -1.0], atol=1e-9)
+        np.testing.assert_allclose(T[:3, 3], [-0.3, 0.7, 0.2], atol=1e-9)
+
+
+def test_two_values_place_the_point_of_a_planar_arm(call):
+    flat = call("path", "planar3r", "--from", "10,40,20", "--xyz", "0.9,1.2", "--line", "--json")
+    solid = call("path", "planar3r", "--from", "10,40,20", "--xyz", "0.9,1.2,0", "--line", "--json")
+    assert flat.out == solid.out
+    assert call("path", "puma560", "--from", "home", "--xyz", "300,200").status == 2

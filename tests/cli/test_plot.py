@@ -82,9 +82,9 @@ def test_what_cannot_be_reached_has_status_3_and_its_nearest_is_drawn(call, tmp_
     path = tmp_path / "a.html"
     answer = call("plot", "planar2r", "--ik", "5,5", "-o", path)
     assert answer.status == 3
-    assert answer.err == "robokin: --ik: no solution: out of reach\n"
+    assert answer.err == "robokin: no solution: out of reach\n"
     data = page_data(path)
-    assert data["ghosts"][0]["label"].startswith("nearest: off by ")
+    assert data["ghosts"][0]["label"].startswith("nearest: position error ")
     assert "out of reach" in data["note"]
     document = call("plot", "planar2r", "--ik", "5,5", "--json").json
     assert (document["reachable"], document["reason"]) == (False, "out of reach")
@@ -140,7 +140,7 @@ def test_a_page_and_a_text_need_no_matplotlib(call, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert call("plot", "puma560", "-o", tmp_path / "a.html").status == 0
     assert call("plot", "puma560").status == 0
-    refused(call("plot", "puma560", "-o", tmp_path / "a.png"), "pip install 'robokin[plot]'")
+    refused(call("plot", "puma560", "-o", tmp_path / "a.png"), "`pip install matplotlib`")
     assert not (tmp_path / "a.png").exists()
 
 
@@ -206,3 +206,12 @@ def test_plot_draws_mechanisms(call, tmp_path):
         answer = call("plot", *words)
         assert answer.status == 2
         assert said in answer.err
+
+
+def test_targets_are_said_as_for_ik(call):
+    by_expression = call("plot", "puma560", "--ik", "Trans(500,149,200) RPY(0,90,0)", "--json").json
+    by_options = call("plot", "puma560", "--xyz", "500,149,200", "--rpy", "0,90,0", "--json").json
+    assert by_options["arms"] == by_expression["arms"]
+    assert call("plot", "planar3r", "--xy", "0.9,1.2", "--phi", "90").status == 0
+    assert call("plot", "planar3r", "--xy", "0.9,1.2", "--ik", "1,1").status == 2
+    assert call("plot", "bennett", "--xyz", "1,1,1").status == 2

@@ -112,7 +112,7 @@ def test_json_lines_are_documents_of_their_own(puma, tmp_path):
     q, p, T = expected(samples)
     documents = [json.loads(line) for line in path.read_text().splitlines()]
     for i, document in enumerate(documents):
-        assert list(document) == ["robot", "units", "q", "position", "pose"]
+        assert list(document) == ["schema", "robot", "id", "units", "q", "position", "pose"]
         assert document["robot"] == "puma560"
         assert document["units"] == {"length": "mm", "angle": "deg"}
         assert document["q"] == q[i].tolist()
@@ -259,7 +259,19 @@ def test_a_part_that_has_no_sample_yet_is_begun(puma, tmp_path, monkeypatch):
     assert write_samples(str(tmp_path / "cloud.csv"), samples_of(puma), resume=True) == 0
 
 
-@pytest.mark.parametrize("state", [None, "", "[]", '{"done": 1}', '{"settings": {}, "done": -1, "size": 5}'])
+STRANGE = [
+    None,
+    "",
+    "[]",
+    '{"done": 1}',
+    '{"settings": {}, "done": -1, "size": 5}',
+    "[" * 100_000,
+    "{" * 70_000,
+    " " * (1 << 17),
+]
+
+
+@pytest.mark.parametrize("state", STRANGE, ids=range(len(STRANGE)))
 def test_a_strange_part_is_not_gone_on_with(state, puma, tmp_path):
     (tmp_path / "cloud.csv.part").write_text("something else")
     if state is not None:
@@ -276,6 +288,72 @@ def test_a_part_that_lost_its_end_is_not_gone_on_with(puma, tmp_path):
     part.write_bytes(part.read_bytes()[:-8])
     with pytest.raises(InputError, match="not the beginning"):
         write_samples(str(path), samples_of(puma, "npy"), resume=True)
+
+
+def left(space, folder, kind="csv", **more):
+    """What an interrupted run of 2,000 of 2,500 samples leaves: the part, and what its side file says."""
+    with pytest.raises(KeyboardInterrupt):
+        write_samples(str(folder / f"cloud.{kind}"), samples_of(space, kind, **more),
+                      progress=stop_after(2, KeyboardInterrupt()))  # fmt: skip
+    part, side = folder / f"cloud.{kind}.part", folder / f"cloud.{kind}.part.json"
+    return part, side, json.loads(side.read_text())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("place", [0, 5, -1])
+def test_a_part_with_another_byte_is_not_gone_on_with(kind, place, puma, tmp_path):
+    part, _, _ = left(puma, tmp_path, kind)
+    data = bytearray(part.read_bytes())
+    data[place] ^= 1
+    part.write_bytes(data)
+    with pytest.raises(InputError, match=r"not the beginning of this file, .* without --resume it is written anew"):
+        write_samples(str(tmp_path / f"cloud.{kind}"), samples_of(puma, kind), resume=True)
+    assert part.read_bytes() == data, "nothing is lost"
+    assert write_samples(str(tmp_path / f"cloud.{kind}"), samples_of(puma, kind)) == 0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "change",
+    [{"done": 10**18}, {"done": 10**400}, {"done": 1000}, {"done": 2500}, {"done": 1999}, {"done": True}, {"done": 2e3},
+     {"size": 10**18}, {"size": 3}, {"size": None}, {"sum": 0}, {"sum": "x"}, {"sum": None}, {"done": 0, "size": 9**9}],
+    ids=str,
+)  # fmt: skip
+def test_a_side_file_that_says_something_else_is_not_believed(kind, change, puma, tmp_path):
+    part, side, state = left(puma, tmp_path, kind)
+    before = part.read_bytes()
+    side.write_text(json.dumps(state | change))
+    with pytest.raises(InputError, match="not the beginning"):
+        write_samples(str(tmp_path / f"cloud.{kind}"), samples_of(puma, kind), resume=True)
+    assert part.read_bytes() == before
+
+
+def test_what_stands_behind_the_whole_blocks_is_cut_off(puma, tmp_path):
+    write_samples(str(tmp_path / "whole.csv"), samples_of(puma))
+    part, _, _ = left(puma, tmp_path)
+    part.write_bytes(part.read_bytes() + b"1,2")
+    assert write_samples(str(tmp_path / "cloud.csv"), samples_of(puma), resume=True) == 2000
+    assert (tmp_path / "cloud.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with a name")
+def test_a_part_that_is_no_file_is_left_alone(puma, tmp_path):
+    precious = tmp_path / "precious"
+    precious.write_text("kept")
+    part = tmp_path / "cloud.csv.part"
+    part.symlink_to(precious)
+    with pytest.raises(OutputError, match=r"cloud\.csv\.part is a link"):
+        write_samples(str(tmp_path / "cloud.csv"), samples_of(puma))
+    assert precious.read_text() == "kept"
+    part.unlink()
+    os.mkfifo(part)
+    with pytest.raises(OutputError, match=r"cloud\.csv\.part is no file"):
+        write_samples(str(tmp_path / "cloud.csv"), samples_of(puma))
+    part.unlink()
+    part.write_text("x")
+    os.mkfifo(tmp_path / "cloud.csv.part.json")
+    with pytest.raises(InputError, match="not the beginning"):
+        write_samples(str(tmp_path / "cloud.csv"), samples_of(puma), resume=True)
 
 
 def fill_up(monkeypatch, room):
@@ -323,6 +401,13 @@ def test_places_that_cannot_be_written_are_refused(puma, tmp_path):
     for place, reason in [("folder.csv", "found a directory"), ("nowhere/cloud.csv", "No such file or directory")]:
         with pytest.raises(OutputError, match=reason):
             write_samples(str(tmp_path / place), samples_of(puma))
+
+
+@pytest.mark.parametrize("length", [243, 247, 250, 255, 300])
+def test_a_name_that_has_no_room_for_the_unfinished_file_leaves_nothing(length, puma, tmp_path):
+    with pytest.raises(OutputError, match="File name too long"):
+        write_samples(str(tmp_path / f"{'x' * (length - 4)}.csv"), samples_of(puma))
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_file_of_no_samples_is_refused(puma, tmp_path):

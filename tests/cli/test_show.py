@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 import robokin
@@ -36,7 +37,7 @@ def test_the_puma_s_document(call):
     assert record["poses"] == {"home": [90, 0, 90, 0, 0, 0]}
     assert record["rows"][1] == {
         "i": 2, "name": "shoulder", "type": "revolute", "variable": "q2", "theta": None, "d": 149.09, "a": 431.8,
-        "alpha": 0.0, "offset": 0.0, "limits": [-225.0, 45.0],
+        "alpha": 0.0, "offset": 0.0, "sense": 1, "limits": [-225.0, 45.0],
     }  # fmt: skip
 
 
@@ -133,3 +134,26 @@ def test_what_show_cannot_read(call):
     refused(call("show"), "ROBOT is missing")
     refused(call("show", "puma560", "extra"), "'extra'", "expected nothing more")
     refused(call("show", "puma560", "--length", "furlong"), "--length", "expected m, cm, mm or in")
+
+
+@pytest.mark.parametrize("name, text", [
+    ("kr6-r900", "(980, 0, 435) mm, z along +x"), ("puma560", "(411.48, 149.09, 489.32) mm, z along +z"),
+    ("ur5e", "(-817.2, -232.9, 62.8) mm, z along -y"), ("assembly", "(7, -8, 6) cm, z along +z"),
+    ("yumi-left", "(564.597461, -0.648654, 417.406963) mm, z along (0.57156, -0.616978, -0.540978)"),
+])  # fmt: skip
+def test_where_the_tool_frame_stands_at_zero(call, name, text):
+    assert f"at zero tool frame at {text}" in " ".join(call("show", name).text.split())
+
+
+def test_the_place_at_zero_is_what_fk_says(call):
+    """In any units, to the last digits of arithmetic, with no negative zero."""
+    for name in ("kr6-r900", "scara", "yumi-left"):
+        zero = call("show", name, "--length", "in", "--json").json["at_zero"]
+        assert list(zero) == ["position", "z", "z_along"]
+        robot = robokin.load(name)
+        T = robokin.forward_kinematics(robot, np.zeros(robot.n))
+        assert zero["position"] == pytest.approx(T[:3, 3] / 0.0254, abs=1e-9)
+        assert zero["z"] == pytest.approx(T[:3, 2], abs=1e-9)
+        assert "-0.0" not in map(str, [*zero["position"], *zero["z"]])
+    assert call("show", "scara", "--json").json["at_zero"]["z_along"] == "-z"
+    assert call("show", "yumi-left", "--json").json["at_zero"]["z_along"] is None

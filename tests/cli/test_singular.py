@@ -16,7 +16,7 @@ def test_the_document(call):
     answer = call("singular", "puma560", "--json")
     assert (answer.status, answer.err) == (0, "")
     document = answer.json
-    assert list(document) == ["robot", "units", "task", "full_rank", "singularities"]
+    assert list(document) == ["schema", "robot", "id", "units", "task", "full_rank", "singularities"]
     shoulder, elbow, wrist = document["singularities"]
     assert all(list(one) == KEYS for one in (shoulder, elbow, wrist))
     assert shoulder["condition"] == "a2 c2 + a3 c23 + d4 s23 = 0: 431.8 c2 - 20.32 c23 + 433.07 s23 = 0"
@@ -45,7 +45,7 @@ def test_units_and_parameters(call):
 
 def test_other_formats(call, tmp_path):
     document = call("singular", "puma560", "--json").json
-    head = {name: document[name] for name in ("robot", "units", "task", "full_rank")}
+    head = {name: document[name] for name in ("schema", "robot", "id", "units", "task", "full_rank")}
     assert call("singular", "puma560", "-f", "jsonl").jsonl == [{**head, **one} for one in document["singularities"]]
     table = call("singular", "puma560", "-f", "csv").csv
     assert table[0] == ["name", "joints", "condition", "values", "example", "lost"]

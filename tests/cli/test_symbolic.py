@@ -56,7 +56,7 @@ def test_long_matrices_have_a_line_an_entry(call):
 def test_json_has_the_lectures_matrix(call, robot):
     document = call("fk", robot, "--symbolic", "--json").json
     assert [[cell.replace(" ", "") for cell in row] for row in document["T"]] == CLOSED_FORMS[robot]["matrix"]
-    assert list(document) == ["robot", "units", "matrices", "T", "symbols"]
+    assert list(document) == ["schema", "robot", "id", "units", "matrices", "T", "symbols"]
     assert all(matrix["name"].startswith("A") for matrix in document["matrices"])
     assert call("fk", robot, "--symbolic", "-f", "jsonl").jsonl == [document]
 

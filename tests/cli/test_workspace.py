@@ -130,7 +130,7 @@ def test_the_three_sets_are_named_and_have_sizes(freedom):
     sets = dexterity["sets"]
     assert list(sets) == ["reachable", "several", "every"]
     assert "lecture" in sets["several"]["needs"]
-    assert "standard" in sets["every"]["needs"]
+    assert "the dexterous workspace" in sets["every"]["needs"]
     assert sets["reachable"]["area"] == document["area"]
     # The closed form of the arm with links 1, 0.6 and 0.35: a ring from 0.75 to 1.25.
     assert abs(sets["every"]["area"] - np.pi) <= sets["every"]["area_error"]
@@ -144,7 +144,7 @@ def test_shades_show_where_every_orientation_is_reached(call):
     for shade in "░▒▓█":
         assert shade * 2 in answer.text
     assert "⣿" not in answer.text
-    assert "the lecture's dextrous set" in " ".join(answer.text.split())
+    assert "the lecture's dexterous workspace" in " ".join(answer.text.split())
 
 
 def test_an_arm_with_finitely_many_orientations_has_a_lectures_set_only(call):
@@ -305,7 +305,7 @@ def test_a_page_shows_a_map_of_orientations_and_the_figures(freedom):
 def test_without_matplotlib_nothing_is_worked_out_before_the_sentence(call, monkeypatch, tmp_path):
     monkeypatch.setattr("robokin.pictures.stills.find_spec", lambda name: None)
     path = tmp_path / "a.png"
-    refused(call("workspace", "puma560", "--plot", path), "pip install 'robokin[plot]'")
+    refused(call("workspace", "puma560", "--plot", path), "`pip install matplotlib`")
     assert not path.exists()
 
 
@@ -332,7 +332,7 @@ def test_without_matplotlib_nothing_is_worked_out_before_the_sentence(call, monk
         (["scara", "--slice", "0.3"], ["--slice", "found '0.3'"]),
         (["scara", "--slice", "w=0.3"], ["--slice", "w=0.3"]),
         (["scara", "--slice", "z=up"], ["--slice"]),
-        (["planar2r", "--at", "1,2"], ["--at", "found 2 values"]),
+        (["scara", "--at", "1,2"], ["--at", "found 2 values"]),
         (["planar2r", "--at", "1,2,0", "--compare", "scara"], ["--at", "--compare", "exclude"]),
         (["planar2r", "--at", "1,2,0", "--plot", "a.png"], ["--at", "--plot", "exclude"]),
         (["planar2r", "--output", "a.csv", "--dextrous"], ["--output", "--dextrous", "exclude"]),
@@ -356,3 +356,10 @@ def test_what_is_wrong_gets_a_sentence(call, arguments, fragments, tmp_path, mon
 
 def test_sliding_joints_need_limits(call, arm):
     refused(call("workspace", arm("type: R, a: 1", "type: P, alpha: 90")), "joint 2", "limits")
+
+
+def test_a_place_of_a_planar_arm_has_two_values(call):
+    flat = call("workspace", "planar3r", "--at", "1,0.5", "--json")
+    assert (flat.status, flat.err) == (0, "")
+    assert flat.out == call("workspace", "planar3r", "--at", "1,0.5,0", "--json").out
+    assert call("workspace", "puma560", "--at", "1,0.5").status == 2

@@ -129,9 +129,9 @@ def test_neither_order_nor_size_matters(k, rng):
 def test_a_chain_of_200_links():
     mechanism = chain_of_four_bars(66)
     assert len(mechanism.links) == 199
-    start = time.perf_counter()
+    start = time.process_time()
     found = mobility_of(mechanism)
-    assert time.perf_counter() - start < 10.0
+    assert time.process_time() - start < 10.0
     assert (found.count, found.mobility, found.verdict) == (66, 66, "right")
 
 

@@ -75,7 +75,7 @@ def test_a_joint_has_as_many_twists_as_freedoms(kind, freedoms):
     ((screws, labels),) = elements_of(joint(kind, pitch=0.2), np.zeros(3), 2.0)
     assert screws.shape == (freedoms, 6)
     assert len(labels) == freedoms
-    assert np.linalg.matrix_rank(screws) == freedoms
+    assert freedoms == 0 or np.linalg.matrix_rank(screws) == freedoms
 
 
 def test_a_universal_joint_is_two_hinges():

@@ -17,7 +17,9 @@ from robokin.spatial import (
     rotation_from_axis_angle,
     rotation_from_euler,
     rotation_from_quaternion,
+    rotation_from_rotation_vector,
     rotation_from_rpy,
+    rotation_vector_from_rotation,
     rpy_from_rotation,
 )
 
@@ -68,6 +70,7 @@ WAYS = {
     "rpy": (rpy_from_rotation, rotation_from_rpy),
     "euler": (euler_from_rotation, rotation_from_euler),
     "quaternion": (quaternion_from_rotation, rotation_from_quaternion),
+    "rotation vector": (rotation_vector_from_rotation, rotation_from_rotation_vector),
     "axis-angle": (axis_angle_from_rotation, lambda pair: rotation_from_axis_angle(*pair)),
 }
 
@@ -129,6 +132,19 @@ def test_half_turns_take_the_axis_with_a_positive_first_element(axis):
     expected *= np.sign(expected[np.flatnonzero(expected)[0]])
     assert np.allclose(found, expected, atol=1e-12)
     assert angle == pytest.approx(np.pi)
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-13, 1e-9, 1e-3, 3.0, np.pi - 1e-9])
+def test_rotation_vectors_keep_all_digits(size, rng):
+    vectors = rng.normal(size=(50, 3))
+    vectors *= size / np.linalg.norm(vectors, axis=1)[:, None]
+    found = rotation_vector_from_rotation(rotation_from_rotation_vector(vectors))
+    assert np.allclose(found, vectors, rtol=3e-15, atol=1e-15 * size)
+
+
+def test_rotation_vectors_of_great_length_are_rotations():
+    for vector in ([1e200, 0, 0], [1e300, -1e300, 1e300], [1e-320, 0, 0]):
+        assert rotation_error(rotation_from_rotation_vector(vector)) < 1e-14
 
 
 def test_quaternions_have_no_negative_w(rng):

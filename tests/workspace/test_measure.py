@@ -233,7 +233,7 @@ def test_the_whole_answer():
 
 
 def test_what_cannot_be_asked():
-    with pytest.raises(InputError, match="found 0 samples, expected at least 1"):
+    with pytest.raises(InputError, match="samples: found 0, expected a whole number of 1 or more"):
         robokin.analyse_workspace(planar(1.0, 0.6), samples=0)
-    with pytest.raises(InputError, match="found sampling 'dice', expected sobol or random or grid"):
+    with pytest.raises(InputError, match="sampling: found 'dice', expected 'sobol', 'random' or 'grid'"):
         robokin.analyse_workspace(planar(1.0, 0.6), sampling="dice")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robokin.cli import DONE
+from robokin.cli.completion import robots, words
 from robokin.cli.options import (
     AngleOption,
     ArrayOutputOption,
@@ -15,7 +16,6 @@ from robokin.cli.options import (
     LengthOption,
     SetOption,
     choose,
-    complete_names,
     effective_units,
     output_format,
     parameter_overrides,
@@ -43,7 +43,7 @@ def command(
         typer.Argument(
             metavar="[NAME]",
             help="A mechanism, a robot or a wheeled base: of `robokin list`, or a path to a description.",
-            autocompletion=complete_names,
+            autocompletion=robots,
             show_default=False,
         ),
     ] = None,
@@ -55,7 +55,13 @@ def command(
         typer.Option("--joints", metavar="JOINTS", help="With --links: joints by type, such as 6R or 12S,6P."),
     ] = None,
     space: Annotated[
-        str | None, typer.Option("--space", metavar="SPACE", help="With --links: planar, spherical or spatial.")
+        str | None,
+        typer.Option(
+            "--space",
+            metavar="SPACE",
+            help="With --links: planar, spherical or spatial.",
+            autocompletion=words(*SPACES),
+        ),
     ] = None,
     between: Annotated[
         str | None, typer.Option("--between", metavar="A,B", help="How link A moves against link B.")
@@ -180,8 +186,13 @@ def _written(record: dict[str, Any], kind: str) -> bytes:
     if kind == "jsonl":
         return json_line(record)
     if kind == "csv":
-        cells = {key: value for key, value in record.items() if not isinstance(value, (dict, list))}
-        return csv_records(list(cells), [["" if value is None else value for value in cells.values()]])
+        cells: dict[str, Any] = {}
+        for key, value in record.items():
+            if key not in ("schema", "id") and not isinstance(value, (dict, list)):
+                cells[key] = value
+            if key == "kind" and record["id"] is not None:
+                cells["id"] = record["id"]
+        return csv_records(list(cells), [list(cells.values())])
     from robokin.cli.mobility_tables import mobility_table, wheeled_table
 
     return wheeled_table(record) if record["kind"] == "wheeled" else mobility_table(record)
@@ -192,10 +203,10 @@ def _described(
     set_: list[str] | None, mode: int | None,
 ) -> bytes:  # fmt: skip
     """The answer about what a description describes."""
-    from robokin.description.library import load_any
+    from robokin.cli.arguments import load_entry
     from robokin.model import Mechanism, Robot
 
-    entry = load_any(name, parameter_overrides(set_), mode)
+    entry = load_entry(name, parameter_overrides(set_), mode)
     units = effective_units(entry.units, *unit_names)
     if isinstance(entry, Mechanism):
         return _mechanism(entry, units, kind, motion, seed)

@@ -8,18 +8,19 @@ from typing import IO, TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from robokin.cli.completion import named_poses
 from robokin.cli.options import (
-    ORIENTATIONS,
     AngleOption,
     ArrayOutputOption,
     AsOption,
+    DropOption,
     FormatOption,
     JsonOption,
     LengthOption,
     RobotArgument,
     SetOption,
-    choose,
     effective_units,
+    orientation_kind,
     output_format,
     parameter_overrides,
 )
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     from robokin.cli.poses import Poses
     from robokin.model import Robot
+    from robokin.tables.carried import Carried
     from robokin.units import Units
 
     Array = NDArray[np.float64]
@@ -44,6 +46,7 @@ def command(
             metavar="Q",
             help="Joint values separated by commas or spaces, expressions allowed; or the name of a pose of the "
             "description; or - for a configuration a line on standard input. Repeatable.",
+            autocompletion=named_poses,
         ),
     ] = None,
     input: Annotated[
@@ -52,7 +55,8 @@ def command(
             "--input",
             "-i",
             metavar="FILE",
-            help="A configuration a line: .csv (with a header or without), .jsonl or .npy; - for standard input.",
+            help="A configuration a line: .csv (with a header or without), .jsonl, .json or .npy; - for standard "
+            "input.",
         ),
     ] = None,
     frames: Annotated[bool, typer.Option("--frames", help="Also the frame after each row of the table.")] = False,
@@ -61,6 +65,7 @@ def command(
     python: Annotated[bool, typer.Option("--python", help="With --symbolic: a numpy function, or -o FILE.py.")] = False,
     numbers: Annotated[bool, typer.Option("--numbers", help="With --symbolic: lengths and twists as numbers.")] = False,
     as_: AsOption = None,
+    drop: DropOption = False,
     output: ArrayOutputOption = None,
     format: FormatOption = None,
     json: JsonOption = False,
@@ -84,6 +89,7 @@ def command(
     from robokin.cli.arguments import load_robot, parse_configuration
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.poses import PoseMaker
+    from robokin.tables.carried import Carried
 
     if symbolic or latex or python or numbers:
         from robokin.cli.symbolic_answer import check_options, form_of, write_symbolic
@@ -96,7 +102,7 @@ def command(
         write_symbolic(model, units, form, output, numbers=numbers, frames=frames)
         return 0
     kind = format_of(output, output_format(format, json), arrays=True)
-    orientation = choose(as_, ORIENTATIONS, "--as")
+    orientation = orientation_kind(as_)
     model = load_robot(robot, parameter_overrides(set_))
     units = effective_units(model.units, length, angle)
     source = _source(model, q, input)
@@ -104,18 +110,22 @@ def command(
         raise _wrong("--frames: a row of CSV has no room for frames, expected the format table, json, jsonl or npy")
 
     maker = PoseMaker(model, units, frames)
-    if source is not None:
-        from robokin.cli.configurations import read_configurations
+    names = csv_columns(model, orientation) if kind == "csv" else RECORD_KEYS
+    carried = Carried(names, say, wanted=source is not None and not drop and kind in ("csv", "json", "jsonl"))
+    from robokin.cli.configurations import read_configurations, say_unit
 
-        alone, blocks = False, read_configurations(source, model, units)
+    if source is not None:
+        alone, blocks = False, read_configurations(source, model, units, carried)
     else:
         import numpy as np
 
         given = np.array([parse_configuration(text, model, units) for text in q or [""]])
+        if not all(text.strip() in model.poses for text in q or [""]):
+            say_unit(model, units, given)
         for note in maker.outside_notes(given):
             say(note)
         alone, blocks = len(given) == 1, iter([given])
-    writer = _Writer(model, units, orientation, alone)
+    writer = _Writer(model, units, orientation, alone, carried)
     with sink(output) as stream:
         for data in writer.write(kind, maker.of(blocks), stream):
             stream.write(data)
@@ -144,6 +154,17 @@ def _source(robot: Robot, q: list[str] | None, input: str | None) -> str | None:
     return source
 
 
+RECORD_KEYS = ("robot", "units", "q", "within_limits", "pose", "frames", "schema")
+"""What a JSON document says itself; an `id` of the input takes the place of its own, which `robot` says too."""
+
+
+def csv_columns(robot: Robot, orientation: str | None) -> list[str]:
+    """The columns of a CSV."""
+    from robokin.tables.orientations import pose_columns
+
+    return [*(f"q{i}" for i in range(1, robot.n + 1)), *pose_columns(orientation or "rpy")]
+
+
 def _wrong(sentence: str) -> Exception:
     from robokin.errors import InputError
 
@@ -152,12 +173,13 @@ def _wrong(sentence: str) -> Exception:
 
 @dataclass(frozen=True)
 class _Writer:
-    """Poses to bytes. `alone` tells that one configuration was asked for, by --q."""
+    """Poses to bytes. `alone` tells that one configuration was asked for, by --q; `carried` is what goes through."""
 
     robot: Robot
     units: Units
     orientation: str | None
     alone: bool
+    carried: Carried
 
     def write(self, kind: str, answers: Iterable[Poses], stream: IO[bytes]) -> Iterator[bytes]:
         """The answers in a format, piece by piece; arrays go to the stream themselves."""
@@ -182,14 +204,17 @@ class _Writer:
         import numpy as np
 
         from robokin.cli.output.text import csv_header, csv_rows
-        from robokin.cli.records import pose_columns, pose_table
+        from robokin.tables.orientations import pose_table
 
-        kind = self.orientation or "rpy"
-        header = csv_header([*(f"q{i}" for i in range(1, self.robot.n + 1)), *pose_columns(kind)])
+        columns = csv_columns(self.robot, self.orientation)
+        begun = False
         for poses in answers:
-            yield header + csv_rows(np.concatenate([poses.q, pose_table(poses.T, kind, self.units)], axis=1))
-            header = b""
-        yield header
+            table = np.concatenate([poses.q, pose_table(poses.T, self.orientation or "rpy", self.units)], axis=1)
+            head = b"" if begun else csv_header(columns)
+            yield self.carried.before(head, csv_rows(table))
+            begun = True
+        if not begun:
+            yield self.carried.before(csv_header(columns), b"")
 
     def jsonl(self, answers: Iterable[Poses]) -> Iterator[bytes]:
         from robokin.cli.output.text import json_line
@@ -204,7 +229,7 @@ class _Writer:
 
     def npy(self, answers: Iterable[Poses], stream: IO[bytes]) -> None:
         from robokin.cli.output.arrays import ArrayWriter
-        from robokin.cli.records import pose_columns, pose_table
+        from robokin.tables.orientations import pose_columns, pose_table
 
         kind = self.orientation or "matrix"
         writer: ArrayWriter | None = None
@@ -219,7 +244,8 @@ class _Writer:
 
     def table(self, answers: Iterable[Poses]) -> Iterator[bytes]:
         from robokin.cli.output.columns import NumberColumns
-        from robokin.cli.records import pose_columns, pose_table
+        from robokin.cli.output.text import page
+        from robokin.tables.orientations import pose_columns, pose_table
 
         kind = self.orientation or "rpy"
         head = f"{self.robot.name}  lengths in {self.units.length}, angles in {self.units.angle}\n\n"
@@ -231,10 +257,10 @@ class _Writer:
                 lines = columns.lines(*self.matrices(poses, numbers))
             else:
                 names = pose_columns(kind)
-                kinds = "lll" + ("aaa" if kind in ("rpy", "euler") else "uuuu")
+                kinds = "lll" + ("aaa" if len(names) == 6 else "uuuu")
                 columns = columns or NumberColumns([("#", 5)], names, kinds, self.units)
                 lines = columns.lines(((number,) for number in numbers), pose_table(poses.T, kind, self.units))
-            yield f"{head}{columns.heading if head else ''}{lines}".encode()
+            yield page(f"{head}{columns.heading if head else ''}{lines}")
             head = ""
 
     def matrices(self, poses: Poses, numbers: Iterable[int]) -> tuple[list[tuple[object, str, str]], Array]:
@@ -256,20 +282,23 @@ class _Writer:
         """The JSON documents of a block."""
         from robokin.cli.records import configuration_records
 
-        return configuration_records(self.robot, self.units, poses, [self.orientation] if self.orientation else [])
+        more = [self.orientation] if self.orientation else []
+        for record in configuration_records(self.robot, self.units, poses, more):
+            yield self.carried.in_front_of(record)
 
     def page(self, poses: Poses) -> list[Any]:
         """All that can be said of one pose, for eyes."""
         from robokin.cli.output.numbers import show
         from robokin.cli.output.tables import heading, number_table, pairs
-        from robokin.cli.records import orientation
+        from robokin.tables.orientations import orientation
 
         T = poses.T[0]
         parts: list[Any] = [heading(self.robot.name, f"lengths in {self.units.length}, angles in {self.units.angle}")]
         parts += ["", number_table("nsap", T[:3].tolist(), "xyz"), ""]
         entries = [("q", "  ".join(show(value) for value in poses.q[0]))] if self.robot.n else []
         entries.append(("position", "  ".join(show(value) for value in T[:3, 3])))
-        labels = {"rpy": "roll pitch yaw", "quaternion": "quaternion", "euler": "Euler ZYZ"}
+        labels = {"rpy": "roll pitch yaw", "quaternion": "quaternion", "euler": "Euler ZYZ", "abc": "A B C",
+                  "quaternion-xyzw": "x y z w", "rotvec": "rotation vector", "wpr": "W P R"}  # fmt: skip
         for kind in dict.fromkeys([self.orientation or "rpy", "rpy", "quaternion"]):
             if kind in labels:
                 values = orientation(T, kind, self.units)

@@ -7,15 +7,14 @@ from typing import Annotated, Any
 import typer
 
 from robokin.cli.options import (
-    ORIENTATIONS,
     AngleOption,
     ArrayOutputOption,
     AsOption,
     FormatOption,
     JsonOption,
     LengthOption,
-    choose,
     effective_units,
+    orientation_kind,
     output_format,
 )
 
@@ -26,8 +25,9 @@ def command(
         typer.Argument(
             metavar="EXPR",
             help="Steps that multiply from left to right: Trans(x,y,z), Rot(x|y|z,angle), Rot([x,y,z],angle), "
-            "RPY(roll,pitch,yaw), Euler(phi,theta,psi), Quat(w,x,y,z), DH(theta,d,a,alpha), MDH(alpha,a,theta,d), "
-            "Inv(...), Matrix([[...]]).",
+            "RPY(roll,pitch,yaw), Euler(phi,theta,psi), Euler(xyz,a,b,c), ABC(a,b,c), WPR(w,p,r), OAT(o,a,t), "
+            "RotVec(x,y,z), Quat(w,x,y,z), QuatXYZW(x,y,z,w), DH(theta,d,a,alpha), MDH(alpha,a,theta,d), Inv(...), "
+            "Matrix([[...]]).",
             show_default=False,
         ),
     ],
@@ -60,15 +60,17 @@ def command(
     from robokin.cli.arguments import parse_numbers
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.output.text import csv_header, csv_rows, json_document, json_line
-    from robokin.cli.records import frame_record, pose_columns, pose_table, poses_in
+    from robokin.cli.records import frame_record, poses_in
     from robokin.description.expressions import Scope
     from robokin.description.transforms import evaluate_transform
     from robokin.errors import ExpressionError, InputError
+    from robokin.records.envelope import envelope
     from robokin.spatial import invert, map_point
+    from robokin.tables.orientations import pose_columns, pose_table
     from robokin.units import Units
 
     kind = format_of(output, output_format(format, json), arrays=True)
-    columns = choose(as_, ORIENTATIONS, "--as")
+    columns = orientation_kind(as_)
     units = effective_units(Units(angle="deg"), length, angle)
     scope = Scope(degrees=units.degrees)
     notes: list[str] = []
@@ -94,7 +96,7 @@ def command(
         raise InputError("the result is too far away for a number, expected less")
     for note in notes:
         say(note)
-    record: dict[str, Any] = {"expression": expression, "units": units.as_record(), **frame_record(T, units)}
+    record: dict[str, Any] = {**envelope("expression", expression, units), **frame_record(T, units, columns)}
     if mapped is not None:
         record["point"] = mapped.tolist()
         if kind == "npy":
@@ -114,11 +116,15 @@ def command(
             row = T if columns in (None, "matrix") else pose_table(T[None], columns, units)[0]
             np.lib.format.write_array(stream, row, version=(1, 0))
         else:
-            stream.write(_table(record, units))
+            stream.write(_table(record, units, columns))
     return 0
 
 
-def _table(record: dict[str, Any], units: Any) -> bytes:
+LABELS = {"quaternion_xyzw": "x y z w", "rotvec": "rotation vector", "abc": "A B C", "wpr": "W P R"}
+"""What a table says of an orientation that it has on demand only."""
+
+
+def _table(record: dict[str, Any], units: Any, kind: str | None) -> bytes:
     from robokin.cli.output.numbers import show
     from robokin.cli.output.tables import heading, number_table, pairs, render
 
@@ -133,6 +139,8 @@ def _table(record: dict[str, Any], units: Any) -> bytes:
         ("quaternion", row(record["quaternion"])),
         ("axis, angle", f"{row(turn['axis'])}, {show(turn['angle'])}"),
     ]
+    if (key := (kind or "rpy").replace("-", "_")) in LABELS:
+        entries.insert(1, (LABELS[key], row(record[key])))
     if "point" in record:
         entries.append(("point", row(record["point"])))
     return render(

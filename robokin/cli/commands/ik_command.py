@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robokin.cli import DONE, NO
+from robokin.cli.completion import named_poses, words
 from robokin.cli.options import (
     AngleOption,
     ArrayOutputOption,
+    DropOption,
     FormatOption,
     JsonOption,
     LengthOption,
@@ -18,8 +20,21 @@ from robokin.cli.options import (
     SetOption,
     choose,
     effective_units,
+    orientation_kind,
     output_format,
     parameter_overrides,
+)
+from robokin.cli.target_options import (
+    ApproachOption,
+    EulerOption,
+    MatrixOption,
+    PhiOption,
+    PoseOption,
+    QuatOption,
+    RpyOption,
+    XyOption,
+    XyzOption,
+    target_texts,
 )
 
 if TYPE_CHECKING:
@@ -38,38 +53,23 @@ DIGITS = 18
 
 def command(
     robot: RobotArgument,
-    pose: Annotated[
-        str | None, typer.Option("--pose", metavar="EXPR", help="The target as a transform expression.")
-    ] = None,
-    matrix: Annotated[
-        str | None,
-        typer.Option("--matrix", metavar="[[..]]|FILE", help="The target as a 4×4 matrix, or a file of one."),
-    ] = None,
-    xyz: Annotated[
-        str | None, typer.Option("--xyz", metavar="X,Y,Z", help="The target's position; alone: any orientation.")
-    ] = None,
-    rpy: Annotated[str | None, typer.Option("--rpy", metavar="R,P,Y", help="With --xyz: roll, pitch, yaw.")] = None,
-    euler: Annotated[
-        str | None, typer.Option("--euler", metavar="PHI,THETA,PSI", help="With --xyz: ZYZ Euler angles.")
-    ] = None,
-    quat: Annotated[
-        str | None, typer.Option("--quat", metavar="W,X,Y,Z", help="With --xyz: a quaternion of length 1.")
-    ] = None,
-    approach: Annotated[
-        str | None, typer.Option("--approach", metavar="X,Y,Z", help="With --xyz: the tool's z axis only, any roll.")
-    ] = None,
-    xy: Annotated[str | None, typer.Option("--xy", metavar="X,Y", help="The position for a planar arm.")] = None,
-    phi: Annotated[
-        str | None, typer.Option("--phi", metavar="PHI", help="With --xy: the angle of the end effector.")
-    ] = None,
+    pose: PoseOption = None,
+    matrix: MatrixOption = None,
+    xyz: XyzOption = None,
+    rpy: RpyOption = None,
+    euler: EulerOption = None,
+    quat: QuatOption = None,
+    approach: ApproachOption = None,
+    xy: XyOption = None,
+    phi: PhiOption = None,
     input: Annotated[
         str | None,
         typer.Option(
             "--input",
             "-i",
             metavar="FILE",
-            help="A pose a line: x, y, z, roll, pitch, yaw or what else `robokin fk` writes (.csv, .jsonl, .npy); "
-            "- for standard input.",
+            help="A pose a line: x, y, z, roll, pitch, yaw or what else `robokin fk` writes (.csv, .jsonl, .json, "
+            ".npy), or x, y, z alone; - for standard input.",
         ),
     ] = None,
     near: Annotated[
@@ -79,10 +79,17 @@ def command(
             metavar="Q",
             help="Order by the greatest joint move from these values or this named pose; of a self-motion the "
             "nearest member is listed.",
+            autocompletion=named_poses,
         ),
     ] = None,
     method: Annotated[
-        str | None, typer.Option("--method", metavar="METHOD", help="auto, analytic or numeric.  [default: auto]")
+        str | None,
+        typer.Option(
+            "--method",
+            metavar="METHOD",
+            help="auto, analytic or numeric.  [default: auto]",
+            autocompletion=words(*METHODS),
+        ),
     ] = None,
     no_limits: Annotated[bool, typer.Option("--no-limits", help="Also solutions outside the joint limits.")] = False,
     max_: Annotated[
@@ -114,6 +121,16 @@ def command(
     explain: Annotated[
         bool, typer.Option("--explain", help="Also the closed-form steps with the numbers in them, as a lecture does.")
     ] = False,
+    as_: Annotated[
+        str | None,
+        typer.Option(
+            "--as",
+            metavar="KIND",
+            help="With --input, of rows without a header: rpy, quaternion (w x y z), quaternion-xyzw, euler (Z Y Z), "
+            "rotvec, abc, wpr or matrix.  [default: rpy, or matrix for 16 columns]",
+        ),
+    ] = None,
+    drop: DropOption = False,
     output: ArrayOutputOption = None,
     format: FormatOption = None,
     json: JsonOption = False,
@@ -145,28 +162,30 @@ def command(
         robokin ik scorbot --xyz 300,40,200 --rpy 0,170,8 --tol-angle 1
         robokin fk puma560 -i joints.csv -f csv | robokin ik puma560 -i - -f csv
     """
+    from itertools import chain
+
     from robokin.cli import say
-    from robokin.cli.answers import Answers
+    from robokin.cli.answers import RECORD_KEYS, Answers, csv_columns
     from robokin.cli.arguments import joint_factors, load_robot, parse_configuration
     from robokin.cli.held_joints import parse_hold
     from robokin.cli.output.numbers import counted
     from robokin.cli.output.sink import format_of, sink
-    from robokin.cli.target_rows import read_targets
     from robokin.cli.targets import parse_target
     from robokin.errors import InputError
+    from robokin.tables.carried import Carried
+    from robokin.tables.targets import Targets
 
     kind = format_of(output, output_format(format, json), arrays=True)
     model = load_robot(robot, parameter_overrides(set_))
     if not model.n:
         raise InputError(f"{model.name} has no joints, expected a robot that can move")
     units = effective_units(model.units, length, angle)
-    options = {
-        "--pose": pose, "--matrix": matrix, "--xyz": xyz, "--rpy": rpy, "--euler": euler, "--quat": quat,
-        "--approach": approach, "--xy": xy, "--phi": phi,
-    }  # fmt: skip
+    options = target_texts(pose, matrix, xyz, rpy, euler, quat, approach, xy, phi)
     given = [name for name, value in options.items() if value is not None]
     if input is not None and given:
         raise InputError(f"--input and {given[0]} exclude each other, expected one of them")
+    if input is None and (as_ is not None or drop):
+        raise InputError(f"{'--as' if as_ is not None else '--drop'} is for rows of a file, expected --input with it")
     if explain:
         _check_explain(kind, input, method, hold)
     if turns and no_limits:
@@ -188,6 +207,8 @@ def command(
         _tolerance(tol_position, "--tol-position", units, angle=False),
         _tolerance(tol_angle, "--tol-angle", units, angle=True),
     )
+    taken = csv_columns(model) if kind == "csv" else RECORD_KEYS
+    carried = Carried(taken, say, wanted=not drop and kind in ("csv", "json", "jsonl"))
     if input is None:
         target = parse_target(options, model, units)
         for note in target.notes:
@@ -199,9 +220,15 @@ def command(
 
             require_lesson(model, arguments["task"])
     else:
-        blocks = read_targets(input, units)
+        targets = Targets(input, units, orientation_kind(as_), carried, say)
+        arriving = targets.blocks()
+        first = next(arriving, None)  # which says what is asked of the tool
+        arguments["task"] = targets.task or "pose"
+        blocks = chain([] if first is None else [first], arriving)
 
-    answers = Answers(model, units, tolerances, arguments, alone=input is None, explain=explain, held=held)
+    answers = Answers(
+        model, units, tolerances, arguments, alone=input is None, explain=explain, held=held, carried=carried
+    )
     with sink(output) as stream:
         for data in answers.write(kind, blocks, stream):
             stream.write(data)

@@ -6,9 +6,11 @@ from typing import Annotated, Any
 
 import typer
 
+from robokin.cli.completion import named_poses, words
 from robokin.cli.options import (
     AngleOption,
     ArrayOutputOption,
+    DropOption,
     FormatOption,
     JsonOption,
     LengthOption,
@@ -30,6 +32,7 @@ TaskOption = Annotated[
         metavar="TASK",
         help="What counts: pose, position or orientation.  [default: position or orientation for arms of up to three "
         "joints that place a point or turn the tool, else pose]",
+        autocompletion=words(*TASKS),
     ),
 ]
 
@@ -43,6 +46,7 @@ def command(
             metavar="Q",
             help="Joint values, or the name of a pose of the description; - for a configuration a line on standard "
             "input. Repeatable.",
+            autocompletion=named_poses,
         ),
     ] = None,
     input: Annotated[
@@ -51,13 +55,21 @@ def command(
             "--input",
             "-i",
             metavar="FILE",
-            help="A configuration a line: .csv (with a header or without), .jsonl or .npy; - for standard input.",
+            help="A configuration a line: .csv (with a header or without), .jsonl, .json or .npy; - for standard "
+            "input.",
         ),
     ] = None,
     frame: Annotated[
-        str | None, typer.Option("--frame", metavar="FRAME", help="The twist's axes: base or tool.  [default: base]")
+        str | None,
+        typer.Option(
+            "--frame",
+            metavar="FRAME",
+            help="The twist's axes: base or tool.  [default: base]",
+            autocompletion=words(*FRAMES),
+        ),
     ] = None,
     task: TaskOption = None,
+    drop: DropOption = False,
     output: ArrayOutputOption = None,
     format: FormatOption = None,
     json: JsonOption = False,
@@ -77,18 +89,21 @@ def command(
         robokin jacobian planar2r --q 30,60 --task position
         robokin jacobian puma560 --input joints.csv --output jacobians.npy
     """
+    from robokin.cli import say
     from robokin.cli.arguments import load_robot
     from robokin.cli.configurations import configurations
-    from robokin.cli.jacobians import Jacobians
+    from robokin.cli.jacobians import Jacobians, taken_by
     from robokin.cli.output.sink import format_of, sink
+    from robokin.tables.carried import Carried
 
     kind = format_of(output, output_format(format, json), arrays=True)
     axes: Any = choose(frame, FRAMES, "--frame") or "base"
     counted: Any = choose(task, TASKS, "--task")
     model = load_robot(robot, parameter_overrides(set_))
     units = effective_units(model.units, length, angle)
-    blocks, _, alone = configurations(model, units, q, input)
-    answers = Jacobians(model, units, axes, counted, alone)
+    carried = Carried(taken_by(kind, model.n), say, wanted=not drop and kind in ("csv", "json", "jsonl"))
+    blocks, _, alone = configurations(model, units, q, input, carried)
+    answers = Jacobians(model, units, axes, counted, alone, carried)
     with sink(output) as stream:
         for data in answers.write(kind, blocks, stream):
             stream.write(data)

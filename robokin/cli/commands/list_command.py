@@ -8,10 +8,13 @@ import typer
 
 from robokin.cli.options import FormatOption, JsonOption, OutputOption, output_format
 
+COLUMNS = ("id", "name", "kind", "joints", "dof", "source")
+"""What a CSV has of each entry, and where words are looked for."""
+
 
 def command(
     words: Annotated[
-        list[str] | None, typer.Argument(metavar="[WORD]...", help="Only what has all of these words in it.")
+        list[str] | None, typer.Argument(metavar="[WORD]...", help="Only what has all of these words.")
     ] = None,
     output: OutputOption = None,
     format: FormatOption = None,
@@ -22,52 +25,40 @@ def command(
     The freedoms (dof) of a mechanism are those that its file states: where a count is wrong only its geometry tells,
     and robokin dof works that out. Those of a wheeled base are its degree of mobility.
 
+    A word is found where a word of an entry's id, name, kind, class, description or source starts with it; in a
+    description or a source one of up to three letters must stand alone. The status is 3 when nothing has all words.
+
     Examples:
         robokin list
         robokin list kuka
+        robokin list scara epson
         robokin list mechanism --json
         robokin list wheeled
     """
+    from robokin.cli import DONE, NO, say
+    from robokin.cli.library_search import found, nothing_found
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.output.text import csv_records, json_document, json_line
-    from robokin.description.library import library_names, load_any
+    from robokin.description.library_index import library_entries
+    from robokin.records.envelope import SCHEMA
 
     kind = format_of(output, output_format(format, json))
-    records = [_record(load_any(name)) for name in library_names()]
-    for word in words or []:
-        records = [record for record in records if _plain(word) in _plain(" ".join(map(str, record.values())))]
+    wanted = [part for word in words or [] for part in word.split()]
+    entries = library_entries()
+    records = [{"schema": SCHEMA, **entry.record()} for entry in found(entries, wanted)]
     with sink(output) as stream:
         if kind == "json":
             stream.write(json_document(records))
         elif kind == "jsonl":
             stream.write(b"".join(json_line(record) for record in records))
         elif kind == "csv":
-            columns = ["id", "name", "kind", "joints", "dof", "source"]
-            stream.write(csv_records(columns, [list(record.values()) for record in records]))
-        else:
+            stream.write(csv_records(COLUMNS, [[record[name] for name in COLUMNS] for record in records]))
+        elif records:
             stream.write(_table(records))
-    return 0
-
-
-def _plain(text: str) -> str:
-    """The text without accents and capitals, so that `staubli` finds Stäubli."""
-    from unicodedata import combining, normalize
-
-    return "".join(letter for letter in normalize("NFKD", text.casefold()) if not combining(letter))
-
-
-def _record(entry: Any) -> dict[str, Any]:
-    from robokin.cli.records import kind_of
-    from robokin.model import Robot
-
-    return {
-        "id": entry.id,
-        "name": entry.name,
-        "kind": kind_of(entry),
-        "joints": entry.types,
-        "dof": entry.n if isinstance(entry, Robot) else entry.expected.get("mobility"),
-        "source": entry.source,
-    }
+    if wanted and not records:
+        say(nothing_found(entries, wanted))
+        return NO
+    return DONE
 
 
 def _table(records: list[dict[str, Any]]) -> bytes:
@@ -76,8 +67,8 @@ def _table(records: list[dict[str, Any]]) -> bytes:
 
     drawn = table()
     drawn.add_column("id", style="cyan", no_wrap=True)
-    drawn.add_column("name", overflow="fold")
-    drawn.add_column("joints", overflow="fold", max_width=12)
+    drawn.add_column("name")
+    drawn.add_column("joints", max_width=12)
     drawn.add_column("dof", justify="right")
     for record in records:
         dof = "–" if record["dof"] is None else str(record["dof"])

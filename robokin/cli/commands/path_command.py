@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robokin.cli import DONE, NO
+from robokin.cli.completion import named_poses, words
 from robokin.cli.options import (
     AngleOption,
     ArrayOutputOption,
@@ -19,6 +20,18 @@ from robokin.cli.options import (
     effective_units,
     output_format,
     parameter_overrides,
+)
+from robokin.cli.target_options import (
+    ApproachOption,
+    EulerOption,
+    MatrixOption,
+    PhiOption,
+    PoseOption,
+    QuatOption,
+    RpyOption,
+    XyOption,
+    XyzOption,
+    target_texts,
 )
 
 if TYPE_CHECKING:
@@ -40,27 +53,26 @@ STEPS = 100
 def command(
     robot: RobotArgument,
     from_: Annotated[
-        str | None, typer.Option("--from", metavar="Q", help="Where it starts: joint values, or a named pose.")
+        str | None,
+        typer.Option(
+            "--from", metavar="Q", help="Where it starts: joint values, or a named pose.", autocompletion=named_poses
+        ),
     ] = None,
     to: Annotated[
-        str | None, typer.Option("--to", metavar="Q", help="Where it ends: joint values, or a named pose.")
-    ] = None,
-    pose: Annotated[
-        str | None, typer.Option("--pose", metavar="EXPR", help="Where it ends, as a transform expression.")
-    ] = None,
-    matrix: Annotated[
-        str | None, typer.Option("--matrix", metavar="[[..]]|FILE", help="Where it ends, as a 4×4 matrix or a file.")
-    ] = None,
-    xyz: Annotated[
         str | None,
-        typer.Option("--xyz", metavar="X,Y,Z", help="Where it ends; alone: with the orientation of the start."),
+        typer.Option(
+            "--to", metavar="Q", help="Where it ends: joint values, or a named pose.", autocompletion=named_poses
+        ),
     ] = None,
-    rpy: Annotated[str | None, typer.Option("--rpy", metavar="R,P,Y", help="With --xyz: roll, pitch, yaw.")] = None,
-    quat: Annotated[
-        str | None, typer.Option("--quat", metavar="W,X,Y,Z", help="With --xyz: a quaternion of length 1.")
-    ] = None,
-    xy: Annotated[str | None, typer.Option("--xy", metavar="X,Y", help="The position for a planar arm.")] = None,
-    phi: Annotated[str | None, typer.Option("--phi", metavar="PHI", help="With --xy: the hand's angle.")] = None,
+    pose: PoseOption = None,
+    matrix: MatrixOption = None,
+    xyz: XyzOption = None,
+    rpy: RpyOption = None,
+    euler: EulerOption = None,
+    quat: QuatOption = None,
+    approach: ApproachOption = None,
+    xy: XyOption = None,
+    phi: PhiOption = None,
     steps: Annotated[
         str | None, typer.Option("--steps", metavar="N", help="Steps; a row more is written.  [default: 100]")
     ] = None,
@@ -74,6 +86,7 @@ def command(
             "--task",
             metavar="TASK",
             help="What follows the line: pose or position.  [default: position for arms that place a point, else pose]",
+            autocompletion=words(*TASKS),
         ),
     ] = None,
     no_limits: Annotated[bool, typer.Option("--no-limits", help="Also outside the joint limits.")] = False,
@@ -86,8 +99,9 @@ def command(
 ) -> int:
     """A path with a quintic time law: at rest at both ends, t from 0 to 1.
 
-    A straight line turns about one fixed axis. It ends where a joint leaves its limits, where there is no solution, or
-    where a joint would have to jump; the rows up to there are written, how far it goes is said, and the status is 3.
+    --xyz alone keeps the orientation of the start. A straight line turns about one fixed axis. It ends where a joint
+    leaves its limits, where there is no solution, or where a joint would have to jump; the rows up to there are
+    written, how far it goes is said, and the status is 3.
     Singularities on the way are said with the fraction of the path. A CSV or an array has the columns t, q1...qn, x, y,
     z, roll, pitch, yaw.
 
@@ -119,7 +133,7 @@ def command(
         example = ",".join(["0"] * model.n)
         raise InputError(f"--from is missing, expected {model.n} values or a named pose, such as --from {example}")
     start = parse_configuration(from_, model, units, "--from") * factors
-    targets = {"--pose": pose, "--matrix": matrix, "--xyz": xyz, "--rpy": rpy, "--quat": quat, "--xy": xy, "--phi": phi}
+    targets = target_texts(pose, matrix, xyz, rpy, euler, quat, approach, xy, phi)
     given = [name for name, value in targets.items() if value is not None]
     if to is not None and given:
         raise InputError(f"--to and {given[0]} exclude each other, expected one of them")
@@ -177,9 +191,17 @@ def _path(
             last[:3, :3] = first[:3, :3]
         elif asked == "position":
             task = task or "position"
+        elif asked == "approach" and line:
+            # The roll about the tool's axis is free: that of the solution nearest to the start.
+            found = solve_ik(robot, last, limits=limits, near=start, task="approach", most=1)
+            assert isinstance(found, Result)
+            if not found.solutions:
+                return no_path(robot, start, found.reason or "not reached", steps)
+            last = forward_kinematics(robot, found.solutions[0].q)
     if line:
         return follow_line(robot, start, last, steps, limits, task)
-    result = solve_ik(robot, last, limits=limits, near=start, task=task or line_task(robot), most=1)
+    wanted = "approach" if asked == "approach" else task or line_task(robot)
+    result = solve_ik(robot, last, limits=limits, near=start, task=wanted, most=1)
     assert isinstance(result, Result)
     if not result.solutions:
         return no_path(robot, start, result.reason or "not reached", steps)

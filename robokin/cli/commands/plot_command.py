@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robokin.cli import DONE, NO
+from robokin.cli.completion import named_poses
 from robokin.cli.options import (
     AngleOption,
     FormatOption,
@@ -17,6 +18,18 @@ from robokin.cli.options import (
     effective_units,
     output_format,
     parameter_overrides,
+)
+from robokin.cli.target_options import (
+    ApproachOption,
+    EulerOption,
+    MatrixOption,
+    PhiOption,
+    PoseOption,
+    QuatOption,
+    RpyOption,
+    XyOption,
+    XyzOption,
+    target_texts,
 )
 
 if TYPE_CHECKING:
@@ -33,12 +46,26 @@ def command(
             metavar="Q",
             help="Joint values, or the name of a pose of the description. Repeatable: all but the first are drawn "
             "pale.  [default: home, else zero]",
+            autocompletion=named_poses,
         ),
     ] = None,
     ik: Annotated[
         str | None,
-        typer.Option("--ik", metavar="EXPR", help="A target, as a transform expression or X,Y,Z: every solution."),
+        typer.Option(
+            "--ik",
+            metavar="EXPR",
+            help="A target, as a transform expression or X,Y,Z: all solutions. Or the target options of `robokin ik`.",
+        ),
     ] = None,
+    pose: PoseOption = None,
+    matrix: MatrixOption = None,
+    xyz: XyzOption = None,
+    rpy: RpyOption = None,
+    euler: EulerOption = None,
+    quat: QuatOption = None,
+    approach: ApproachOption = None,
+    xy: XyOption = None,
+    phi: PhiOption = None,
     frames: Annotated[bool, typer.Option("--frames", help="Also the frame after each row of the table.")] = False,
     view: Annotated[
         str | None,
@@ -75,29 +102,30 @@ def command(
         robokin plot planar3r --q 30,40,50 --q 60,20,10 --json
         robokin plot puma560 --ik "Trans(500,149,200) RPY(0,90,0)" -o arms.html
         robokin plot scara --ik 400,200,300 -f csv
+        robokin plot planar3r --xy 0.9,1.2 --phi 90
         robokin plot bennett -o bennett.html
     """
     import numpy as np
 
     from robokin.cli import say
-    from robokin.cli.arguments import joint_factors, load_robot, parse_configuration, way_of
+    from robokin.cli.arguments import joint_factors, load_entry, load_robot, parse_configuration, way_of
     from robokin.cli.output.sink import sink
-    from robokin.cli.plots import FARTHEST, answer, asked, ending_of, scene_of, view_of
+    from robokin.cli.plots import FARTHEST, answer, asked, ending_of, scene_of, view_of, wanted_target
     from robokin.cli.poses import PoseMaker
-    from robokin.description.library import load_any
     from robokin.errors import InputError
     from robokin.kinematics.forward import joint_frames
     from robokin.model import Mechanism
     from robokin.pictures.arm import default_configuration
 
+    options = target_texts(pose, matrix, xyz, rpy, euler, quat, approach, xy, phi)
     kind = output_format(format, json)
     if output is not None and kind is not None:
         raise InputError("--output draws a picture by the file's ending, expected no --format and no --json")
     ending = ending_of(output) if output is not None else ""
     eye = view_of(view)
-    loaded = load_any(robot, parameter_overrides(set_), way_of(mode))
+    loaded = load_entry(robot, parameter_overrides(set_), way_of(mode))
     if isinstance(loaded, Mechanism):
-        for option, value in (("--q", q), ("--ik", ik), ("--frames", frames)):
+        for option, value in (("--q", q), ("--ik", ik), *options.items(), ("--frames", frames)):
             if value:
                 raise InputError(f"{option} is for robots, expected none for a mechanism: `robokin dof` has --drive")
         _draw_mechanism(loaded, effective_units(loaded.units, length, angle), kind, output, eye)
@@ -113,10 +141,11 @@ def command(
     given, name = [value * joint_factors(model, units) for value in values], ""
     if q and q[0].strip() in model.poses:
         name = q[0].strip()
-    if not given and ik is None:
+    target = wanted_target(ik, options, model, units)
+    if not given and target is None:
         home, name = default_configuration(model)
         given = [home]
-    wanted = asked(model, units, given, ik)
+    wanted = asked(model, units, given, target)
     if not wanted.postures:
         home, name = default_configuration(model)
         wanted = type(wanted)(asked(model, units, [home], None).postures, wanted.target, wanted.result, wanted.notes)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from robokin.cli.options import (
     AngleOption,
@@ -16,10 +16,6 @@ from robokin.cli.options import (
     output_format,
     parameter_overrides,
 )
-
-if TYPE_CHECKING:
-    from robokin.model import Joint, Mechanism, Robot
-    from robokin.units import Units
 
 
 def command(
@@ -40,13 +36,14 @@ def command(
         robokin show arm.yaml --length m --angle rad
         robokin show scara-frames --set l1=500 --json
     """
+    from robokin.cli.arguments import load_entry
+    from robokin.cli.descriptions import mechanism_record, robot_record
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.output.text import csv_records, json_document, json_line
-    from robokin.description.library import load_any
     from robokin.model import Mechanism, Robot
 
     kind = format_of(output, output_format(format, json))
-    loaded = load_any(robot, parameter_overrides(set_))
+    loaded = load_entry(robot, parameter_overrides(set_))
     units = effective_units(loaded.units, length, angle)
     if isinstance(loaded, Robot):
         record, rows, drawn = robot_record(loaded, units), "rows", _robot_table
@@ -73,118 +70,6 @@ def _cell(value: Any) -> Any:
     return " ".join(map(str, value)) if isinstance(value, list) else "" if value is None else value
 
 
-def robot_record(robot: Robot, units: Units) -> dict[str, Any]:
-    """All that is known of a robot, in the given units."""
-    from robokin.cli.arguments import in_units, joint_factors
-    from robokin.cli.records import poses_in
-    from robokin.kinematics.structure import structure_of
-    from robokin.mobility.count import grubler
-
-    structure = structure_of(robot)
-    rows = []
-    variables = iter(range(1, robot.n + 1))
-    for i, row in enumerate(robot.rows, start=1):
-        rows.append(_row_record(i, row, f"q{next(variables)}" if row.moves else None, robot.convention, units))
-    factors = joint_factors(robot, units)
-    return {
-        "robot": robot.id,
-        "name": robot.name,
-        "kind": "robot",
-        "description": robot.description,
-        "source": robot.source,
-        "units": units.as_record(),
-        "convention": robot.convention,
-        "joints": robot.types,
-        "class": structure.arm,
-        "wrist": structure.wrist or None,
-        "n": robot.n,
-        "m": structure.dimension,
-        "redundancy": structure.redundancy,
-        "grubler": grubler(6, robot.n + 1, [1] * robot.n),
-        "inverse": _inverse_record(robot),
-        "parameters": dict(robot.parameters),
-        "base": poses_in(robot.base.copy(), units).tolist(),
-        "tool": poses_in(robot.tool.copy(), units).tolist(),
-        "rows": rows,
-        "poses": {name: in_units(q, factors).tolist() for name, q in robot.poses.items()},
-    }
-
-
-def _row_record(i: int, row: Joint, variable: str | None, convention: str, units: Units) -> dict[str, Any]:
-    import numpy as np
-
-    from robokin.cli.arguments import in_units
-    from robokin.cli.records import poses_in
-
-    def in_angle(value: float) -> float:
-        return float(in_units(np.array(value), units.radians))
-
-    def in_length(value: float) -> float:
-        return float(in_units(np.array(value), units.metres))
-
-    turns = row.type == "revolute"
-    own = in_angle if turns else in_length
-    record: dict[str, Any] = {"i": i, "name": row.name, "type": str(row.type), "variable": variable}
-    if convention == "frames":
-        origin = np.eye(4) if row.origin is None else row.origin
-        record["origin"] = poses_in(origin.copy(), units).tolist()
-        record["axis"] = None if row.axis is None or variable is None else row.axis.tolist()
-    else:
-        record["theta"] = None if turns else in_angle(row.theta)
-        record["d"] = None if row.type == "prismatic" else in_length(row.d)
-        record["a"] = in_length(row.a)
-        record["alpha"] = in_angle(row.alpha)
-    record["offset"] = own(row.offset) if variable else None
-    low, high = row.limits
-    record["limits"] = None if np.isinf(low) else [own(low), own(high)]
-    return record
-
-
-def _inverse_record(robot: Robot) -> dict[str, Any] | None:
-    """How the inverse kinematics is solved, why so, and whether every solution is found."""
-    from robokin.inverse.analysis import analysis_of
-
-    if not robot.n:
-        return None
-    analysis = analysis_of(robot)
-    return {"method": analysis.method, "reason": analysis.sentence, "complete": analysis.complete}
-
-
-def mechanism_record(mechanism: Mechanism, units: Units) -> dict[str, Any]:
-    """A mechanism's links and joints and Grübler's count, in the given units."""
-    from robokin.mobility.count import grubler
-
-    freedoms = [joint.freedoms for joint in mechanism.joints for _ in range(joint.multiplicity)]
-    return {
-        "mechanism": mechanism.id,
-        "name": mechanism.name,
-        "kind": "mechanism",
-        "description": mechanism.description,
-        "source": mechanism.source,
-        "units": units.as_record(),
-        "space": mechanism.space,
-        "links": list(mechanism.links),
-        "ground": mechanism.ground,
-        "output": mechanism.output or None,
-        "grubler": grubler(mechanism.order, len(mechanism.links), freedoms),
-        "parameters": dict(mechanism.parameters),
-        "joints": [
-            {
-                "name": joint.name,
-                "type": joint.type,
-                "links": list(joint.links),
-                "freedoms": joint.freedoms,
-                "at": None if joint.at is None else (joint.at / units.metres).tolist(),
-                "axes": None if joint.axes is None else joint.axes.tolist(),
-                "actuated": joint.actuated,
-                "turns": [joint.gearing[0] / number for number in joint.gearing] or None,
-                "carrier": joint.carrier or None,
-            }
-            for joint in mechanism.joints
-        ],
-    }
-
-
 def _robot_table(record: dict[str, Any]) -> bytes:
     from robokin.cli.output.numbers import show, show_range
     from robokin.cli.output.tables import heading, pairs, render, table
@@ -198,12 +83,13 @@ def _robot_table(record: dict[str, Any]) -> bytes:
     named = any(row["name"] != str(row["i"]) for row in record["rows"])
     for name in ["i", *(["joint"] if named else []), "type", *headings, "limits"]:
         drawn.add_column(name, justify="right" if name not in ("joint", "type", "origin", "axis") else "left",
-                         no_wrap=name != "origin", overflow="fold")  # fmt: skip
+                         no_wrap=name not in ("joint", "origin"))  # fmt: skip
+    angle = record["units"]["angle"]
     for row in record["rows"]:
-        cells = [_variable(row, name) for name in ("origin", "axis")] if frames else []
+        cells = [_variable(row, name, angle) for name in ("origin", "axis")] if frames else []
         if not frames:
             order = ("alpha", "a", "theta", "d") if modified else ("theta", "d", "a", "alpha")
-            cells = [_variable(row, name) for name in order]
+            cells = [_variable(row, name, angle) for name in order]
         limits = "" if row["limits"] is None else show_range(*row["limits"])
         drawn.add_row(str(row["i"]), *([row["name"]] if named else []), row["type"], *cells, limits)
     units = record["units"]
@@ -226,45 +112,60 @@ def _robot_table(record: dict[str, Any]) -> bytes:
     for name, pose in record["poses"].items():
         entries.append((f"pose {name}", "  ".join(show(value) for value in pose)))
     for name in ("base", "tool"):
-        text = _transform_text(record[name])
+        text = _transform_text(record[name], angle)
         if text:
             entries.append((name, text))
+    entries.append(("at zero", _zero_text(record["at_zero"], units["length"])))
     entries += [("about", record["description"])] if record["description"] else []
     entries += [("source", record["source"])] if record["source"] else []
     rest = f"{record['convention']} convention, lengths in {units['length']}, angles in {units['angle']}"
     return render(heading(record["name"], rest), "", drawn, "", pairs(entries))
 
 
-def _variable(row: dict[str, Any], name: str) -> str:
+def _zero_text(zero: dict[str, Any], unit: str) -> str:
+    """`tool frame at (980, 0, 435) mm, z along +x`; a slanting z as a vector."""
+    from robokin.cli.output.numbers import show
+
+    def vector(values: list[float]) -> str:
+        return f"({', '.join(show(value) for value in values)})"
+
+    return f"tool frame at {vector(zero['position'])} {unit}, z along {zero['z_along'] or vector(zero['z'])}"
+
+
+def _variable(row: dict[str, Any], name: str, angle: str) -> str:
     """A cell as a lecture prints it: the variable with its offset, or the constant."""
     from robokin.cli.output.numbers import show
 
     value = row[name]
     if name == "origin":
-        return _transform_text(value) or "identity"
+        return _transform_text(value, angle) or "identity"
     if name == "axis":
-        return "" if value is None else " ".join(show(part) for part in value)
+        axis = "" if value is None else " ".join(show(part) for part in value)
+        return f"{axis}  for -{row['variable']}" if row["sense"] == -1 else axis
     if value is not None:
         return show(value)
     offset = row["offset"]
+    if row["sense"] == -1:
+        return f"{show(offset)} - {row['variable']}" if offset else f"-{row['variable']}"
     if not offset:
         return str(row["variable"])
     return f"{row['variable']} {'+' if offset > 0 else '-'} {show(abs(offset))}"
 
 
-def _transform_text(matrix: list[list[float]]) -> str:
-    """A constant transform in short; "" for the identity."""
+def _transform_text(matrix: list[list[float]], angle: str) -> str:
+    """A constant transform in short, its angles in the unit; "" for the identity."""
     import numpy as np
 
     from robokin.cli.output.numbers import show
     from robokin.spatial import rpy_from_rotation
+    from robokin.units import RADIANS
 
     T = np.array(matrix)
     parts = []
     if np.any(np.abs(T[:3, 3]) > 0):
         parts.append(f"Trans({', '.join(show(value) for value in T[:3, 3])})")
     if np.max(np.abs(T[:3, :3] - np.eye(3))) > 1e-12:
-        angles = np.degrees(rpy_from_rotation(T[:3, :3]))
+        angles = rpy_from_rotation(T[:3, :3]) / RADIANS[angle]
         parts.append(f"RPY({', '.join(show(value) for value in angles)})")
     return " ".join(parts)
 
@@ -275,7 +176,7 @@ def _mechanism_table(record: dict[str, Any]) -> bytes:
 
     drawn = table()
     for name in ("joint", "type", "links", "f", "at", "axis"):
-        drawn.add_column(name, justify="right" if name == "f" else "left", overflow="fold")
+        drawn.add_column(name, justify="right" if name == "f" else "left")
     for joint in record["joints"]:
         at = "" if joint["at"] is None else " ".join(show(value) for value in joint["at"])
         axes = "; ".join(" ".join(show(part) for part in axis) for axis in joint["axes"] or [])

@@ -44,7 +44,7 @@ def command(
     from robokin.cli.arguments import load_robot
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.output.text import csv_records, json_document, json_line
-    from robokin.cli.singularities import COLUMNS, page, row, singularity_record
+    from robokin.cli.singularities import COLUMNS, page, row, singular_record
     from robokin.kinematics.singular import singular_configurations
     from robokin.kinematics.velocity import motion_task
 
@@ -54,12 +54,13 @@ def command(
     units = effective_units(model.units, length, angle)
     whole = motion_task(model, counted)
     found = singular_configurations(model, counted)
-    records = [singularity_record(model, units, one) for one in found]
-    head = {"robot": model.id, "units": units.as_record(), "task": whole.name, "full_rank": whole.dimension}
+    document = singular_record(model, units, counted)
+    records = document["singularities"]
     with sink(output) as stream:
         if kind == "json":
-            stream.write(json_document({**head, "singularities": records}))
+            stream.write(json_document(document))
         elif kind == "jsonl":
+            head = {name: value for name, value in document.items() if name != "singularities"}
             stream.writelines(json_line({**head, **record}) for record in records)
         elif kind == "csv":
             stream.write(csv_records(COLUMNS, map(row, records)))

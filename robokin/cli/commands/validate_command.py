@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from robokin.cli import DONE, WRONG_INPUT, say
 from robokin.cli.options import FormatOption, JsonOption, OutputOption, output_format
+
+if TYPE_CHECKING:
+    from robokin.cli.descriptions import Verdict
+
+COLUMNS = ("file", "valid", "kind", "name", "error", "line", "column")
+"""What a CSV has of each file, the notes behind it."""
+
+INDENT = " " * 7
+"""What stands below a verdict."""
 
 
 def command(
@@ -23,52 +32,42 @@ def command(
 
     Examples:
         robokin validate arm.yaml
-        robokin validate robots/*.yaml --json
+        robokin validate robots/arms/*.yaml --json
     """
+    from robokin.cli.descriptions import file_record, verdict_of
     from robokin.cli.output.sink import format_of, sink
-    from robokin.cli.output.text import csv_records, encode, json_document, json_line
+    from robokin.cli.output.text import csv_records, json_document, json_line, page
 
     kind = format_of(output, output_format(format, json))
-    records = [_verdict(file) for file in files]
+    verdicts = [verdict_of(file) for file in files]
+    records = [file_record(file, verdict) for file, verdict in zip(files, verdicts, strict=True)]
     with sink(output) as stream:
         if kind == "json":
             stream.write(json_document(records))
         elif kind == "jsonl":
             stream.write(b"".join(json_line(record) for record in records))
         elif kind == "csv":
-            stream.write(csv_records(list(records[0]), [list(record.values()) for record in records]))
+            rows = [[*(record[name] for name in COLUMNS), _one_line(record["notes"])] for record in records]
+            stream.write(csv_records([*COLUMNS, "notes"], rows))
         else:
-            for record in records:
-                noun = "wheeled base" if record["kind"] == "wheeled" else record["kind"]
-                detail = f"{noun} {record['name']}" if record["valid"] else record["error"]
-                stream.write(encode(f"{'ok   ' if record['valid'] else 'wrong'}  {_shown(record, detail)}\n"))
+            for record, loaded in zip(records, verdicts, strict=True):
+                stream.write(page(_text(record, loaded)))
     wrong = sum(not record["valid"] for record in records)
     if wrong:
         say(f"{wrong} of {len(records)} descriptions {'is' if wrong == 1 else 'are'} wrong")
     return WRONG_INPUT if wrong else DONE
 
 
-def _shown(record: dict[str, Any], detail: str) -> str:
-    # An error names its file, line and column itself.
-    return detail if detail.startswith(record["file"]) else f"{record['file']}: {detail}"
+def _one_line(places: list[dict[str, Any]]) -> str:
+    return "; ".join(f"{place['line']}:{place['column']}: {place['message']}" for place in places)
 
 
-def _verdict(file: str) -> dict[str, Any]:
-    from robokin.cli.records import kind_of
-    from robokin.description.library import load_any
-    from robokin.errors import InputError
-
-    record: dict[str, Any] = {
-        "file": file, "valid": False, "kind": None, "name": None, "error": None, "line": None, "column": None,
-    }  # fmt: skip
-    try:
-        loaded = load_any(file)
-    except InputError as error:
-        record["error"] = str(error)
-        record["line"] = getattr(error, "line", 0) or None
-        record["column"] = getattr(error, "column", 0) or None
-    else:
-        record["valid"] = True
-        record["kind"] = kind_of(loaded)
-        record["name"] = loaded.name
-    return record
+def _text(record: dict[str, Any], verdict: Verdict) -> str:
+    """A verdict as text: the kind and the name and what looks wrong, or all mistakes with their lines."""
+    if isinstance(verdict, Exception):
+        # An error names its file, line and column itself.
+        detail = str(verdict) if str(verdict).startswith(record["file"]) else f"{record['file']}: {verdict}"
+        return f"wrong  {detail}\n".replace("\n", f"\n{INDENT}").removesuffix(INDENT)
+    noun = "wheeled base" if record["kind"] == "wheeled" else record["kind"]
+    notes = "".join(f"note   {note}\n" for note in verdict.notes)
+    return f"ok     {record['file']}: {noun} {record['name']}\n{notes}"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robokin.cli import DONE, NO
+from robokin.cli.completion import robots, words
 from robokin.cli.options import (
     AngleOption,
     AsOption,
@@ -38,14 +39,17 @@ MOST_CORES = 1024
 def command(
     robot: RobotArgument,
     samples: Annotated[
-        str | None, typer.Option("--samples", "-n", metavar="N", help="How much is looked at.  [default: 131072]")
+        str | None, typer.Option("--samples", "-n", metavar="N", help="Number of points.  [default: 131072]")
     ] = None,
-    seed: Annotated[
-        str | None, typer.Option("--seed", metavar="N", help="Seed of what is drawn.  [default: 0]")
-    ] = None,
+    seed: Annotated[str | None, typer.Option("--seed", metavar="N", help="Random seed.  [default: 0]")] = None,
     sampling: Annotated[
         str | None,
-        typer.Option("--sampling", metavar="KIND", help="sobol (even), random or grid.  [default: sobol]"),
+        typer.Option(
+            "--sampling",
+            metavar="KIND",
+            help="sobol (even), random or grid.  [default: sobol]",
+            autocompletion=words(*SAMPLINGS),
+        ),
     ] = None,
     dextrous: Annotated[
         bool, typer.Option("--dextrous", help="Also how freely the tool can be turned, place by place.")
@@ -55,7 +59,9 @@ def command(
     ] = None,
     at: Annotated[
         list[str] | None,
-        typer.Option("--at", metavar="X,Y,Z", help="Is it reachable, with which orientations? Repeatable."),
+        typer.Option(
+            "--at", metavar="X,Y,Z", help="Is it reachable, with which orientations? X,Y for a planar arm. Repeatable."
+        ),
     ] = None,
     section: Annotated[
         bool, typer.Option("--section", help="The half plane that the first joint turns: its area and boundary.")
@@ -64,7 +70,9 @@ def command(
         list[str] | None,
         typer.Option("--slice", metavar="z=H", help="The plane x, y or z at a length: area, boundary. Repeatable."),
     ] = None,
-    compare: Annotated[str | None, typer.Option("--compare", metavar="ROBOT", help="Another robot beside it.")] = None,
+    compare: Annotated[
+        str | None, typer.Option("--compare", metavar="ROBOT", help="Another robot beside it.", autocompletion=robots)
+    ] = None,
     plot: Annotated[
         str | None,
         typer.Option("--plot", "-p", metavar="FILE", help="Draw to .png, .svg, .pdf, or .html that turns."),
@@ -75,7 +83,12 @@ def command(
     ] = None,
     with_: Annotated[
         str | None,
-        typer.Option("--with", metavar="WHAT", help="What --output has beside positions: joints, poses or both."),
+        typer.Option(
+            "--with",
+            metavar="WHAT",
+            help="What --output has beside positions: joints, poses or both.",
+            autocompletion=words(*HELD),
+        ),
     ] = None,
     as_: AsOption = None,
     resume: Annotated[
@@ -106,7 +119,7 @@ def command(
         robokin workspace scara --plot scara.html
         robokin workspace spherical --slice z=0.1 --json
         robokin workspace planar2r --compare planar3r
-        robokin workspace planar3r --at 1,0.5,0
+        robokin workspace planar3r --at 1,0.5
         robokin workspace puma560 --samples 1000 --with joints --output cloud.csv
     """
     from robokin.cli.arguments import load_robot, parse_numbers
@@ -175,15 +188,15 @@ def _places(robot: Robot, units: Units, kind: str, at: list[str], arguments: dic
     """Which places can be reached, and how."""
     import numpy as np
 
-    from robokin.cli.arguments import parse_numbers
     from robokin.cli.output.text import csv_records, json_document, json_line, json_list
     from robokin.cli.progress import Stages
+    from robokin.cli.targets import parse_place
     from robokin.cli.workspaces import place_record
     from robokin.workspace.place import at_point
     from robokin.workspace.space import space_of
     from robokin.workspace.stages import stage
 
-    points = [parse_numbers(text, "--at", [False] * 3, units, "x, y and z") * units.metres for text in at]
+    points = [parse_place(text, "--at", robot, units) for text in at]
     space = space_of(robot)
     places = []
     with Stages():
@@ -224,7 +237,7 @@ def _write(
 ) -> int:
     """Write samples to a file."""
     from robokin.cli import say
-    from robokin.cli.options import ORIENTATIONS
+    from robokin.cli.options import orientation_kind
     from robokin.cli.progress import Progress
     from robokin.cli.sample_files import write_samples
     from robokin.cli.sample_rows import Samples, sample_format
@@ -234,7 +247,7 @@ def _write(
     held = [part.strip() for part in with_.split(",")] if with_ is not None else []
     for part in held:
         choose(part, HELD, "--with")
-    turned = choose(as_, ORIENTATIONS, "--as") or "rpy"
+    turned = orientation_kind(as_) or "rpy"
     if as_ is not None and "poses" not in held:
         raise InputError("--as: says how poses are written, expected --with poses")
     samples = Samples(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from robokin.errors import counted as counted
+
 DECIMALS = 6
 """Decimals of a table: a micrometre in metres, a nanometre in millimetres. JSON and CSV have all."""
 
@@ -31,8 +33,3 @@ def show_range(low: float, high: float) -> str:
     least = show(low) if float(show(low)) >= low else show(low + step)
     most = show(high) if float(show(high)) <= high else show(high - step)
     return f"{least} .. {most}"
-
-
-def counted(number: int, noun: str) -> str:
-    """`1 value`, `2 values`."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

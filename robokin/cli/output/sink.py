@@ -1,19 +1,23 @@
-"""Where output goes: standard output, or a file that is whole or absent."""
+"""Where output goes: standard output, a file that is whole or absent, or a pipe or a device as it is."""
 
 from __future__ import annotations
 
 import contextlib
 import os
-import secrets
+import stat
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
+from robokin.cli.interruptions import unfinished
 from robokin.errors import InputError, OutputError, or_list
+from robokin.files import CLOSED, descriptor_of
 
 ENDINGS = {".csv": "csv", ".jsonl": "jsonl", ".json": "json", ".npy": "npy"}
 """Formats by the ending of the output's name."""
+
+CLOSED_OUTPUT = "standard output is closed, expected a place that can be written"
 
 
 def format_of(output: str | None, chosen: str | None, *, arrays: bool = False) -> str:
@@ -36,36 +40,116 @@ def format_of(output: str | None, chosen: str | None, *, arrays: bool = False) -
 def sink(output: str | None, option: str = "--output") -> Iterator[IO[bytes]]:
     """A stream of bytes to the output, standard output for None; `option` is what named it.
 
-    A file is written under a temporary name beside it and takes its own name when all is written; on
-    any error, and on Ctrl-C, nothing is left.
+    A file is written under a temporary name beside it and takes its own name when all is written; on any error, and on
+    Ctrl-C, nothing is left. What is no regular file (a pipe, a device, /dev/stdout) is written as it is.
     """
     if output is None:
-        if sys.stdout is None:
-            raise OutputError("standard output is closed, expected a place that can be written")
-        try:
-            # What was printed before as text must come first.
-            sys.stdout.flush()
-            yield sys.stdout.buffer
-            sys.stdout.buffer.flush()
-        except OSError as error:
-            error.filename = error.filename or "standard output"
-            raise
+        yield from _standard_output()
         return
-    # A link stays a link: what it points to is replaced.
-    path = Path(os.path.realpath(output))
-    if path.is_dir():
-        raise OutputError(f"{option} {output}: found a directory, expected a place that can be written")
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    place = Place(output, option)
     try:
-        stream = temporary.open("xb")
-    except OSError as error:
-        raise OutputError(f"{option} {output}: {error.strerror}, expected a place that can be written") from None
-    try:
-        with stream:
+        with place.straight() if place.special else place.whole() as stream:
             yield stream
-        temporary.replace(path)
     except OSError as error:
-        raise OutputError(f"{option} {output}: {error.strerror}, nothing was written") from None
-    finally:
-        with contextlib.suppress(OSError):
-            temporary.unlink(missing_ok=True)
+        if isinstance(error, BrokenPipeError) and place.special:
+            raise  # whoever reads has what it wants
+        rest = "expected a place that can be written" if place.special else "nothing was written"
+        raise OutputError(f"{option} {output}: {error.strerror or error}, {rest}") from None
+
+
+def _standard_output() -> Iterator[IO[bytes]]:
+    if sys.stdout is None or 1 in CLOSED:
+        raise OutputError(CLOSED_OUTPUT)
+    try:
+        # What was printed before as text must come first.
+        sys.stdout.flush()
+        yield sys.stdout.buffer
+        sys.stdout.buffer.flush()
+    except OSError as error:
+        error.filename = error.filename or "standard output"
+        raise
+
+
+class Place:
+    """Where an option wants a file: `path`, links followed; `special` where there is something else than a file.
+
+    Raises OutputError for a place that cannot be written.
+    """
+
+    def __init__(self, output: str, option: str) -> None:
+        self.output, self.option = output, option
+        self.path = Path(output)
+        self.before: os.stat_result | None = None
+        """What is known of the file that is there."""
+        try:
+            self.descriptor = descriptor_of(output)
+            self.special = self.descriptor is not None
+            if not self.special:
+                # A link stays a link: what it points to is replaced.
+                self.path = Path(os.path.realpath(output))
+                self._look()
+        except (OSError, ValueError) as error:
+            raise self.refusal(getattr(error, "strerror", None) or "this is no path") from None
+
+    def _look(self) -> None:
+        """What is there now."""
+        try:
+            there = self.path.stat()
+        except FileNotFoundError:
+            return
+        for refused, what in ((stat.S_ISDIR, "directory"), (stat.S_ISBLK, "disk"), (stat.S_ISSOCK, "socket")):
+            if refused(there.st_mode):
+                raise self.refusal(f"found a {what}")
+        if not os.access(self.path, os.W_OK):
+            raise self.refusal("Permission denied")
+        self.special = not stat.S_ISREG(there.st_mode)
+        self.before = there
+
+    def refusal(self, reason: str) -> OutputError:
+        """The error that says why nothing can be written here."""
+        return OutputError(f"{self.option} {self.output}: {reason}, expected a place that can be written")
+
+    @contextlib.contextmanager
+    def whole(self) -> Iterator[IO[bytes]]:
+        """A stream to a file that takes its name, and the permissions of the one before it, when all is written."""
+        temporary = self.path.with_name(f".{self.path.name[:40]}.{os.urandom(4).hex()}.part")
+        with unfinished(str(temporary)):
+            try:
+                stream = temporary.open("xb")
+            except OSError as error:
+                raise self.refusal(str(error.strerror)) from None
+            with stream:
+                if self.before is not None:
+                    with contextlib.suppress(OSError, AttributeError):  # only root gives files away
+                        os.chown(temporary, self.before.st_uid, self.before.st_gid)
+                    temporary.chmod(stat.S_IMODE(self.before.st_mode))
+                yield stream
+            temporary.replace(self.path)
+
+    @contextlib.contextmanager
+    def straight(self) -> Iterator[IO[bytes]]:
+        """A stream to what is no regular file, in order with what was written there before."""
+        with self._opened() as stream:
+            if self.path.suffix.lower() != ".npy":
+                yield stream
+                return
+            import shutil
+            import tempfile
+
+            # An array says its number of rows in front when all is known, and here there is no way back.
+            with tempfile.TemporaryFile() as kept:
+                yield kept
+                kept.seek(0)
+                shutil.copyfileobj(kept, stream)
+
+    def _opened(self) -> IO[bytes]:
+        try:
+            if self.descriptor is None:
+                return open(os.open(self.path, os.O_WRONLY | getattr(os, "O_NOCTTY", 0)), "wb")  # noqa: PTH123
+            if self.descriptor in CLOSED:
+                raise self.refusal("it is closed")
+            for stream in (sys.stdout, sys.stderr):
+                stream.flush()
+            return open(os.dup(self.descriptor), "wb")  # noqa: PTH123
+        except OSError as error:
+            raise self.refusal(str(error.strerror)) from None

@@ -5,10 +5,12 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import cache
-from importlib import import_module
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
+
+from robokin.errors import visible
+from robokin.tables.fast_json import pydantic_function
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,9 +19,18 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
+STEERING = re.compile(r"[\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+"""Characters that steer a terminal or the order of reading, and that JSON need not escape but may."""
+
+
 def encode(text: str) -> bytes:
     """A text in UTF-8. What a file's name holds that is no text is written as \\udcxx, in JSON an escape too."""
     return text.encode(errors="backslashreplace")
+
+
+def page(text: str) -> bytes:
+    """A text for eyes, in which nothing but line breaks steers the terminal."""
+    return encode(visible(text, lines=True))
 
 
 def json_document(record: Any) -> bytes:
@@ -29,7 +40,7 @@ def json_document(record: Any) -> bytes:
 
 def json_line(record: Any) -> bytes:
     """One JSON document on one line."""
-    return encode(json.dumps(record, ensure_ascii=False, allow_nan=False) + "\n")
+    return encode(_dumped(record) + "\n")
 
 
 def json_list(blocks: Iterable[Iterable[Any]]) -> Iterator[bytes]:
@@ -42,8 +53,13 @@ def json_list(blocks: Iterable[Iterable[Any]]) -> Iterator[bytes]:
     yield b"[]\n" if separator == b"[\n" else b"\n]\n"
 
 
+def _dumped(value: Any) -> str:
+    text = json.dumps(value, ensure_ascii=False, allow_nan=False)
+    return text if text.isascii() and "\x7f" not in text else STEERING.sub(lambda c: f"\\u{ord(c[0]):04x}", text)
+
+
 def _pretty(value: Any, indent: int) -> str:
-    flat = json.dumps(value, ensure_ascii=False, allow_nan=False)
+    flat = _dumped(value)
     if not isinstance(value, (dict, list)) or not value:
         return flat
     nested = [item for item in (value.values() if isinstance(value, dict) else value) if isinstance(item, (dict, list))]
@@ -52,10 +68,14 @@ def _pretty(value: Any, indent: int) -> str:
         return flat
     inner = " " * (indent + 2)
     if isinstance(value, dict):
-        items = [f"{inner}{json.dumps(key)}: {_pretty(item, indent + 2)}" for key, item in value.items()]
+        items = [f"{inner}{_dumped(key)}: {_pretty(item, indent + 2)}" for key, item in value.items()]
         return "{\n" + ",\n".join(items) + "\n" + " " * indent + "}"
     items = [inner + _pretty(item, indent + 2) for item in value]
     return "[\n" + ",\n".join(items) + "\n" + " " * indent + "]"
+
+
+BOOLEANS = {True: "true", False: "false"}
+"""Truth values in a CSV: the words of JSON."""
 
 
 def csv_header(names: Iterable[str]) -> bytes:
@@ -79,20 +99,13 @@ def csv_rows(table: Array) -> bytes:
 
 
 def csv_records(columns: Sequence[str] | None, rows: Iterable[Sequence[Any]]) -> bytes:
-    """Rows of mixed values, quoted where they need it, below their header if there is one."""
+    """Rows of mixed values, quoted where they need it, below their header if there is one.
+
+    Booleans are written as JSON has them, `true` and `false`; None is an empty cell.
+    """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     if columns is not None:
         writer.writerow(columns)
-    writer.writerows(rows)
+    writer.writerows([BOOLEANS[cell] if cell is True or cell is False else cell for cell in row] for row in rows)
     return encode(text.getvalue())
-
-
-@cache
-def pydantic_function(name: str) -> Callable[..., Any] | None:
-    """A function of pydantic's core, which Typer brings; None with an older Typer. Not loaded before it is used."""
-    try:
-        core = import_module("pydantic_core")
-    except ImportError:
-        return None
-    return getattr(core, name, None)
