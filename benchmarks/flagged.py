@@ -37,6 +37,7 @@ def flagged(robot: robokin.Robot, T: np.ndarray) -> np.ndarray:
         seen.append(again)
         return look_again(analysis, again, *rest)
 
+    # The solver itself says which poses it doubts; no answer does.
     look_again = blocks.look_again
     with mock.patch.object(blocks, "look_again", watched):
         robokin.solve_ik(robot, T)

@@ -5,7 +5,8 @@ answer or to the key, a pipe keeps whoever reads it waiting, a device never ends
 size of a description, and links only where the teacher asks for it.
 """
 
-# os.path takes what no file can be called, as a shell hands it over, for a no.
+# os.path takes what no file can be called, as a shell hands it over, for a no; it joins and shortens names as they are
+# written, without asking the disk where a link leads.
 # ruff: noqa: PTH100, PTH114, PTH116, PTH118, PTH119, PTH120
 from __future__ import annotations
 

@@ -157,3 +157,14 @@ def test_the_place_at_zero_is_what_fk_says(call):
         assert "-0.0" not in map(str, [*zero["position"], *zero["z"]])
     assert call("show", "scara", "--json").json["at_zero"]["z_along"] == "-z"
     assert call("show", "yumi-left", "--json").json["at_zero"]["z_along"] is None
+
+
+def test_a_table_has_some_of_very_many_poses_and_says_how_many_more(call, tmp_path):
+    path = tmp_path / "many.yaml"
+    rows = "".join(f"  p{i}: [{i}]\n" for i in range(100))
+    path.write_text(f"robokin: 1\nname: Many\nunits: {{angle: deg}}\njoints:\n  - {{type: R, a: 1}}\nposes:\n{rows}")
+    text = call("show", path).text
+    assert "pose p39" in text
+    assert "pose p40" not in text
+    assert "and 60 more poses, which --json has" in text
+    assert len(call("show", path, "--json").json["poses"]) == 100

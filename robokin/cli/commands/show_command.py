@@ -17,6 +17,9 @@ from robokin.cli.options import (
     parameter_overrides,
 )
 
+MOST_POSES = 40
+"""Named poses that a table shows: a description may have thousands."""
+
 
 def command(
     robot: RobotArgument,
@@ -109,8 +112,10 @@ def _robot_table(record: dict[str, Any]) -> bytes:
     if record["parameters"]:
         listed = ", ".join(f"{name} = {show(value)}" for name, value in record["parameters"].items())
         entries.append(("parameters", listed))
-    for name, pose in record["poses"].items():
-        entries.append((f"pose {name}", "  ".join(show(value) for value in pose)))
+    poses = list(record["poses"].items())
+    entries += [(f"pose {name}", "  ".join(show(value) for value in pose)) for name, pose in poses[:MOST_POSES]]
+    if len(poses) > MOST_POSES:
+        entries.append(("", f"and {len(poses) - MOST_POSES} more poses, which --json has"))
     for name in ("base", "tool"):
         text = _transform_text(record[name], angle)
         if text:

@@ -145,11 +145,12 @@ class Place:
     def _opened(self) -> IO[bytes]:
         try:
             if self.descriptor is None:
-                return open(os.open(self.path, os.O_WRONLY | getattr(os, "O_NOCTTY", 0)), "wb")  # noqa: PTH123
+                writing = os.O_WRONLY | getattr(os, "O_NOCTTY", 0)
+                return open(os.open(self.path, writing), "wb")  # noqa: PTH123 - a descriptor, no path
             if self.descriptor in CLOSED:
                 raise self.refusal("it is closed")
             for stream in (sys.stdout, sys.stderr):
                 stream.flush()
-            return open(os.dup(self.descriptor), "wb")  # noqa: PTH123
+            return open(os.dup(self.descriptor), "wb")  # noqa: PTH123 - a descriptor, no path
         except OSError as error:
             raise self.refusal(str(error.strerror)) from None
