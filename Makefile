@@ -46,7 +46,7 @@ $(VENV)-oldest/installed: .ci/requirements/oldest.txt pyproject.toml
 	$(VENV)-oldest/bin/$(HERE)
 	@touch $@
 
-PART := $(addprefix tests/,spatial description test_imports.py test_installation.py test_fuzz.py mobility/test_screws.py \
+PART := $(addprefix tests/,spatial formats test_imports.py test_installation.py test_fuzz.py mobility/test_screws.py \
   pictures/test_drawings.py cli/test_bad_input.py cli/test_fk.py cli/test_frame.py cli/test_help.py)
 test-oldest: $(VENV)-oldest/installed ## a minute's part of the tests with the lowest versions that pyproject.toml permits
 	$(VENV)-oldest/bin/$(PYTEST) $(PART)

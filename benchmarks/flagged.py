@@ -15,7 +15,7 @@ from inverse import arms, truth
 
 import robokin
 from benchmarks import machine
-from robokin.inverse import blocks
+from robokin.inverse import solve_blocks
 
 SEED = 561
 
@@ -38,8 +38,8 @@ def flagged(robot: robokin.Robot, T: np.ndarray) -> np.ndarray:
         return look_again(analysis, again, *rest)
 
     # The solver itself says which poses it doubts; no answer does.
-    look_again = blocks.look_again
-    with mock.patch.object(blocks, "look_again", watched):
+    look_again = solve_blocks.look_again
+    with mock.patch.object(solve_blocks, "look_again", watched):
         robokin.solve_ik(robot, T)
     again = np.concatenate([np.empty((0, 4, 4)), *seen])
     return np.array([bool(np.any(np.all(np.abs(again - pose) < 1e-12, axis=(1, 2)))) for pose in T], dtype=bool)

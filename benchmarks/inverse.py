@@ -12,7 +12,7 @@ import robokin
 from benchmarks.machine import best_of, line
 from robokin.inverse.analysis import analyse
 from robokin.inverse.solve import solve_many
-from robokin.kinematics.chain import chain_of
+from robokin.kernel.chain import chain_of
 
 SEED = 560
 COUNTS = {"puma560": 20_000, "ur5e": 20_000, "stanford": 20_000, "crx10ia": 2_000, "manocha-canny-1994": 2_000,

@@ -10,7 +10,7 @@ import time
 import numpy as np
 
 from benchmarks.machine import best_of, line
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.mobility.trace import trace
 from robokin.mobility.verdict import mobility_of
 from robokin.model import Mechanism, MechanismJoint

@@ -8,7 +8,7 @@ import numpy as np
 
 import robokin
 from benchmarks.machine import line
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import wrapped

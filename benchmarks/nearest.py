@@ -14,7 +14,7 @@ from inverse.arms import random_chain
 import robokin
 from benchmarks.machine import line
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.closest import nearest_configurations
+from robokin.inverse.numeric.closest import nearest_configurations
 from robokin.inverse.verify import residuals
 from robokin.spatial import rotation_from_axis_angle
 

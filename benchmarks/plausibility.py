@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import random
 
-from description.drawn_tables import SEED, SOUND, false_alarms, noted, seen, slip, tables_of
+from formats.drawn_tables import SEED, SOUND, false_alarms, noted, seen, slip, tables_of
 
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.model import Robot
 
 

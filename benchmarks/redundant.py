@@ -18,10 +18,10 @@ from inverse import arms, judge, truth
 import robokin
 from benchmarks import machine
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.arcs import arcs_within
-from robokin.inverse.closing import newton_within
 from robokin.inverse.hold import held_arm
-from robokin.inverse.solution_sets import families
+from robokin.inverse.numeric.closing import newton_within
+from robokin.inverse.self_motion.arcs import arcs_within
+from robokin.inverse.self_motion.solution_sets import families
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import CLOSES, SAME, residuals
 

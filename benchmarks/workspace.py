@@ -16,10 +16,10 @@ import numpy as np
 
 import robokin
 from benchmarks.machine import best_of, line
+from robokin.jobs.ordered_map import in_order, usable_cores
 from robokin.model import JointType, Robot
 from robokin.workspace.attitudes import attitudes, group_of
 from robokin.workspace.extremes import extent
-from robokin.workspace.parallel import in_order, usable_cores
 from robokin.workspace.sampling import TASK, joint_values, positions, sample_blocks
 from robokin.workspace.space import Space, space_of
 from robokin.workspace.trials import fractions

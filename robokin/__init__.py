@@ -13,32 +13,32 @@ TYPE_CHECKING = False  # `typing` has the same, and takes a while to load
 if TYPE_CHECKING:
     from robokin import documents as documents
     from robokin import notebook as notebook
-    from robokin.description import load as load
-    from robokin.description import load_mechanism as load_mechanism
-    from robokin.description import load_wheeled as load_wheeled
-    from robokin.description.library import library_names as library_names
-    from robokin.description.pose_expressions import transform as transform
     from robokin.drawings import draw as draw
     from robokin.errors import DescriptionError as DescriptionError
     from robokin.errors import InputError as InputError
     from robokin.errors import InputTypeError as InputTypeError
     from robokin.errors import RobokinError as RobokinError
+    from robokin.formats import load as load
+    from robokin.formats import load_mechanism as load_mechanism
+    from robokin.formats import load_wheeled as load_wheeled
+    from robokin.formats.library import library_names as library_names
+    from robokin.formats.pose_expressions import transform as transform
     from robokin.grading.marks import check_configuration as check_configuration
     from robokin.grading.marks import check_pose as check_pose
     from robokin.grading.marks import check_solutions as check_solutions
     from robokin.grading.marks import check_table as check_table
     from robokin.grading.tolerance import Tolerance as Tolerance
     from robokin.grading.tolerance import default_tolerance as default_tolerance
-    from robokin.inverse.path import follow_line as follow_line
-    from robokin.inverse.path import interpolate_joints as interpolate_joints
+    from robokin.inverse.joint_paths import follow_line as follow_line
+    from robokin.inverse.joint_paths import interpolate_joints as interpolate_joints
     from robokin.inverse.solve import solve_ik as solve_ik
     from robokin.kinematics.forward import forward_kinematics as forward_kinematics
     from robokin.kinematics.forward import link_frames as link_frames
     from robokin.kinematics.jacobian import jacobian as jacobian
     from robokin.kinematics.singular import singular_configurations as singular_configurations
     from robokin.kinematics.velocity import differential_kinematics as differential_kinematics
+    from robokin.mobility.manoeuvrability import manoeuvrability_of as manoeuvrability_of
     from robokin.mobility.verdict import mobility_of as mobility_of
-    from robokin.mobility.wheeled import manoeuvrability_of as manoeuvrability_of
     from robokin.model import Mechanism as Mechanism
     from robokin.model import Robot as Robot
     from robokin.model import WheeledBase as WheeledBase
@@ -64,9 +64,9 @@ _MODULES = ("documents", "notebook")
 # Names are imported when they are first used, so that the command line starts without numpy.
 _HOMES = {
     "Units": "robokin.units",
-    "load": "robokin.description",
-    "load_mechanism": "robokin.description",
-    "load_wheeled": "robokin.description",
+    "load": "robokin.formats",
+    "load_mechanism": "robokin.formats",
+    "load_wheeled": "robokin.formats",
     "RobokinError": "robokin.errors",
     "InputError": "robokin.errors",
     "DescriptionError": "robokin.errors",
@@ -76,17 +76,17 @@ _HOMES = {
     "jacobian": "robokin.kinematics.jacobian",
     "differential_kinematics": "robokin.kinematics.velocity",
     "singular_configurations": "robokin.kinematics.singular",
-    "follow_line": "robokin.inverse.path",
-    "interpolate_joints": "robokin.inverse.path",
+    "follow_line": "robokin.inverse.joint_paths",
+    "interpolate_joints": "robokin.inverse.joint_paths",
     "mobility_of": "robokin.mobility.verdict",
-    "manoeuvrability_of": "robokin.mobility.wheeled",
+    "manoeuvrability_of": "robokin.mobility.manoeuvrability",
     "Mechanism": "robokin.model",
     "Robot": "robokin.model",
     "analyse_workspace": "robokin.workspace.analyse",
     "WheeledBase": "robokin.model",
     "draw": "robokin.drawings",
     "symbols": "robokin.symbol_matrices",
-    "transform": "robokin.description.pose_expressions",
+    "transform": "robokin.formats.pose_expressions",
     "Tolerance": "robokin.grading.tolerance",
     "default_tolerance": "robokin.grading.tolerance",
     "check_pose": "robokin.grading.marks",
@@ -94,7 +94,7 @@ _HOMES = {
     "check_solutions": "robokin.grading.marks",
     "check_table": "robokin.grading.marks",
     "InputTypeError": "robokin.errors",
-    "library_names": "robokin.description.library",
+    "library_names": "robokin.formats.library",
     "rotation_from_rpy": "robokin.spatial.conversions",
     "rpy_from_rotation": "robokin.spatial.conversions",
     "rotation_from_euler": "robokin.spatial.conversions",

@@ -14,8 +14,9 @@ from pathlib import Path as File
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from robokin.arrays import Array
 from robokin.brief import Answer
 from robokin.errors import InputError
 from robokin.expected import described, expect_choice, expect_finite, expect_flag, expect_kind
@@ -23,10 +24,9 @@ from robokin.model import Mechanism, Robot, WheeledBase, expect_robot
 from robokin.units import Units
 
 if TYPE_CHECKING:
-    from robokin.inverse.result import Question, Result
+    from robokin.inverse.solutions import Question, Result
     from robokin.kinematics.velocity import Differential, TaskName
 
-Array = NDArray[np.float64]
 Document = dict[str, Any]
 
 ORIENTATIONS = ("rpy", "quaternion", "euler", "matrix")
@@ -37,13 +37,13 @@ def document_of(value: Answer, units: Units | None = None) -> Any:
 
     Of a robot, a mechanism or a wheeled base that of `robokin show`. Raises InputError for what is no answer.
     """
-    from robokin.inverse.path import Path
-    from robokin.inverse.result import BatchResult, Result
+    from robokin.inverse.joint_paths import Path
+    from robokin.inverse.solutions import BatchResult, Result
     from robokin.kinematics.velocity import Differential
+    from robokin.mobility.manoeuvrability import Manoeuvrability
     from robokin.mobility.verdict import Mobility
-    from robokin.mobility.wheeled import Manoeuvrability
     from robokin.symbol_matrices import Symbols
-    from robokin.workspace.result import Workspace
+    from robokin.workspace.workspace_result import Workspace
 
     own = None if units is None else expect_units(units)
     if isinstance(value, Robot | Mechanism | WheeledBase):
@@ -91,7 +91,7 @@ def show(entry: Robot | Mechanism | WheeledBase, units: Units | None = None) -> 
 
 def library() -> list[Document]:
     """What `robokin list` says: an entry for everything in the library."""
-    from robokin.description.library_index import library_entries
+    from robokin.formats.library_index import library_entries
     from robokin.records.envelope import SCHEMA
 
     return [{"schema": SCHEMA, **entry.record()} for entry in library_entries()]
@@ -113,8 +113,7 @@ def fk(
 
     `frames` adds the frame after each row of the table, `orientation` another form of the rotation.
     """
-    from robokin.cli.poses import Poses
-    from robokin.cli.records import configuration_records, poses_in
+    from robokin.cli.records import PoseBlock, configuration_records, poses_in
     from robokin.kinematics.forward import forward_kinematics, joint_values, row_frames
 
     robot, frames = expect_robot(robot), expect_flag(frames, "frames")
@@ -128,7 +127,7 @@ def fk(
     for poses in (T, at):
         if poses is not None and not np.isfinite(poses).all():
             raise InputError("q: the pose is too far away for a number, expected less")
-    block = Poses(1, _in_joint_units(robot, own, rows), robot.within_limits(rows), T, at)
+    block = PoseBlock(1, _in_joint_units(robot, own, rows), robot.within_limits(rows), T, at)
     records = [*configuration_records(robot, own, block, more)]
     return records[0] if values.ndim == 1 else records
 
@@ -172,7 +171,7 @@ def dof(entry: Robot | Mechanism | WheeledBase, units: Units | None = None) -> D
 
         return robot_record(entry, entry.units if units is None else expect_units(units))
     if isinstance(entry, WheeledBase):
-        from robokin.mobility.wheeled import manoeuvrability_of
+        from robokin.mobility.manoeuvrability import manoeuvrability_of
 
         return cast(Document, document_of(manoeuvrability_of(entry), units))
     from robokin.mobility.verdict import mobility_of
@@ -202,8 +201,8 @@ def place(robot: Robot, point: ArrayLike, seed: int = 0, units: Units | None = N
 def frame(expression: str, units: Units | None = None) -> Document:
     """What `robokin frame` says of a transform expression in the units (by default metres and degrees)."""
     from robokin.cli.records import frame_record, poses_in
-    from robokin.description.expressions import Scope
-    from robokin.description.transforms import evaluate_transform
+    from robokin.formats.number_expressions import Scope
+    from robokin.formats.transform_expressions import evaluate_transform
     from robokin.records.envelope import envelope
 
     expression = cast(str, expect_kind(expression, str, "expression", "a transform expression, such as 'Rot(z, 90)'"))
@@ -266,7 +265,7 @@ def _in_joint_units(robot: Robot, units: Units, q: Array) -> Array:
 def _solutions(
     result: Any, units: Units | None, explain: bool = False, options: Mapping[str, Any] | None = None
 ) -> Any:
-    from robokin.inverse.result import Result
+    from robokin.inverse.solutions import Result
 
     if not isinstance(result, Result):
         return [_solutions(one, units, explain, options) for one in result]

@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike
 
 from robokin.errors import InputError
 from robokin.expected import described, expect_choice, expect_finite, expect_flag, expect_kind
-from robokin.inverse.result import Result
+from robokin.inverse.solutions import Result
 from robokin.model import Mechanism, Robot, expect_robot
 from robokin.units import Units
 
 if TYPE_CHECKING:
-    from robokin.cli.plots import Asked
+    from robokin.cli.plots import AskedPostures
     from robokin.pictures.arm_scene import Scene
 
 KINDS = ("svg", "png", "pdf", "html", "text")
@@ -98,7 +98,7 @@ def draw(
 
         return Drawing(kind, arm_page(scene))
     from robokin.pictures.arm_stills import arm_still
-    from robokin.pictures.stills import require_matplotlib
+    from robokin.pictures.workspace_stills import require_matplotlib
 
     require_matplotlib(f".{kind}")
     return Drawing(kind, arm_still(scene, kind))
@@ -118,7 +118,7 @@ def scene_with(
     frames: bool,
     view: tuple[float, float] | None,
     units: Units | None,
-) -> tuple[Scene, Asked]:
+) -> tuple[Scene, AskedPostures]:
     """The picture of a robot at configurations, or with the solutions of a target, and what was asked for."""
     from robokin.cli.plots import FARTHEST, asked, scene_of, with_solutions
     from robokin.cli.targets import Target

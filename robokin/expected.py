@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING, Any
 from robokin.errors import InputError, InputTypeError, did_you_mean, or_list, shown
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from robokin.arrays import Array
 
-    Array = NDArray[np.float64]
 
 SHOWN_DIGITS = 30
 """Digits of a whole number that a message repeats: of some thousands Python makes no text."""

@@ -8,8 +8,9 @@ from html import escape
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from robokin.arrays import Array
 from robokin.brief import Answer
 from robokin.cli.output.numbers import counted, show
 from robokin.documents import document_of
@@ -25,8 +26,8 @@ RIGHT = ' style="text-align: right"'
 
 def html_of(value: Answer) -> str:
     """An answer, a robot, a mechanism or a wheeled base as HTML."""
-    from robokin.inverse.path import Path
-    from robokin.inverse.result import BatchResult, Result
+    from robokin.inverse.joint_paths import Path
+    from robokin.inverse.solutions import BatchResult, Result
     from robokin.kinematics.velocity import Differential
 
     if isinstance(value, Robot):
@@ -73,7 +74,7 @@ class MatrixView:
 
 def matrix(values: ArrayLike) -> MatrixView:
     """A matrix (m, n), such as a pose or a Jacobian, to be shown in a notebook with at most six decimals."""
-    array: NDArray[np.float64] = expect_numbers(values, "values", "a matrix (m, n) of numbers")
+    array: Array = expect_numbers(values, "values", "a matrix (m, n) of numbers")
     if array.ndim != 2:
         raise InputError(f"values: found an array of shape {array.shape}, expected a matrix (m, n)")
     return MatrixView(tuple(tuple(row) for row in (array + 0.0).tolist()))

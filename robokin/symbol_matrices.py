@@ -7,9 +7,9 @@ from typing import Any
 
 from robokin.brief import Answer
 from robokin.cli.symbolic_text import symbolic_latex, symbolic_page, symbolic_record
+from robokin.derivation.symbolic_kinematics import SymbolicKinematics, symbolic_kinematics
 from robokin.expected import expect_flag, expect_kind
 from robokin.model import Robot, expect_robot
-from robokin.symbolic.matrices import SymbolicKinematics, symbolic_kinematics
 from robokin.units import Units
 
 

@@ -18,7 +18,7 @@ from fuzz_files import NAMES, contents, mutated
 
 from robokin.cli.app import COMMANDS, app
 from robokin.cli.commands.check_command import CHECKS
-from robokin.description import library_names
+from robokin.formats import library_names
 
 OFTEN = {"frame": 9, "fk": 9, "validate": 7, "ik": 6, "show": 4, "jacobian": 5, "path": 3, "dof": 3, "list": 1,
          "schema": 0.2, "singular": 0.4, "plot": 1.5, "workspace": 0.6, "check": 9}  # fmt: skip

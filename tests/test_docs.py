@@ -11,8 +11,8 @@ import yaml
 from documentation import DOCS, INDEX, ROOT, command_page, output, pages, rewritten, runs, same, steps, with_commands
 
 from robokin.cli.app import COMMANDS
-from robokin.description import schema
-from robokin.description.read import read_text
+from robokin.formats import schema
+from robokin.formats.read import read_text
 
 PAGES = [page for page in pages() if page.parent != ROOT]
 

@@ -13,18 +13,22 @@ import robokin
 
 PACKAGE = Path(robokin.__file__).parent
 ORDER = [
-    "errors", "files", "expected", "units", "brief", "spatial", "model", "kinematics", "symbolic", "description",
-    "tables", "inverse", "lessons", "workspace", "mobility", "grading", "pictures", "records", "cli", "drawings",
-    "symbol_matrices", "documents", "notebook",
+    "errors", "arrays", "expected", "files", "units", "brief", "spatial", "model", "kernel", "jobs", "assembly",
+    "kinematics", "formats", "tables", "inverse", "workspace", "mobility", "derivation", "grading", "pictures",
+    "records", "cli", "drawings", "symbol_matrices", "documents", "notebook",
 ]  # fmt: skip
-"""Each room imports only rooms before it. description (text to model) also needs the Denavit-Hartenberg
-matrices; what calculates must not need description, which `CALCULATING` says."""
+"""Each room imports only rooms before it."""
+
+READING = {"files", "formats", "tables"}
+"""What knows paths, streams, YAML keys or rows of files; what calculates imports none of it."""
 
 CALCULATING = [
-    "errors", "expected", "units", "brief", "spatial", "model", "kinematics", "symbolic", "inverse", "lessons",
-    "workspace", "mobility", "grading",
+    "errors", "arrays", "expected", "units", "brief", "spatial", "model", "kernel", "jobs", "assembly", "kinematics",
+    "inverse", "workspace", "mobility", "derivation", "grading",
 ]  # fmt: skip
-HOMES = {"yaml": "description", "typer": "cli", "rich": "cli/output", "matplotlib": "pictures"}
+HOMES = {"yaml": "formats", "typer": "cli", "rich": "cli/output", "matplotlib": "pictures"}
+
+ONE_NAME_EACH = {"__init__.py", "__main__.py"}
 
 
 def modules():
@@ -57,7 +61,42 @@ def test_imports_run_one_way(path):
             continue
         assert ORDER.index(other) < ORDER.index(own), f"{path} imports {name}"
         if own in CALCULATING:
-            assert other in CALCULATING, f"{path} calculates and imports {name}"
+            assert other not in READING, f"{path} calculates and imports {name}"
+
+
+def file_imports():
+    """Of each module of the package, by its dotted name, those that it imports at any place in it."""
+    names = {".".join(["robokin", *path.with_suffix("").parts]).removesuffix(".__init__"): path for path in modules()}
+    found = {name: set() for name in names}
+    for own, path in names.items():
+        for node in ast.walk(ast.parse((PACKAGE / path).read_text())):
+            if isinstance(node, ast.ImportFrom):
+                for alias in node.names:
+                    whole = f"{node.module}.{alias.name}"
+                    found[own].add(whole if whole in names else node.module)
+    return {name: {other for other in others if other in names and other != name} for name, others in found.items()}
+
+
+def test_no_file_imports_one_that_imports_it():
+    """Taking away, again and again, every module whose imports are all gone leaves none."""
+    left = {name: others for name, others in file_imports().items() if name != "robokin"}
+    while True:
+        done = {name for name, others in left.items() if not others & left.keys()}
+        if not done:
+            break
+        left = {name: others for name, others in left.items() if name not in done}
+    assert not left, sorted(left)
+
+
+def test_no_two_modules_and_no_two_classes_have_one_name():
+    files, classes = {}, {}
+    for path in modules():
+        if path.name not in ONE_NAME_EACH:
+            files.setdefault(path.name, []).append(path)
+        for node in ast.walk(ast.parse((PACKAGE / path).read_text())):
+            if isinstance(node, ast.ClassDef):
+                classes.setdefault(node.name, []).append(path)
+    assert not {name: paths for name, paths in {**files, **classes}.items() if len(paths) > 1}
 
 
 @pytest.mark.parametrize("path", modules(), ids=str)
@@ -89,12 +128,12 @@ def test_help_starts_without_the_heavy_libraries():
 
 
 def test_a_list_of_the_library_reads_no_description_and_needs_no_numbers():
-    assert not {"numpy", "yaml", "robokin.description.read"} & loaded_by("list")
+    assert not {"numpy", "yaml", "robokin.formats.read"} & loaded_by("list")
 
 
 def test_a_json_answer_needs_no_table_and_no_validator():
     names = loaded_by("fk", "puma560", "--q", "home", "--json")
-    heavy = {"rich.table", "robokin.cli.output.tables", "pydantic", "robokin.description.mechanisms"}
+    heavy = {"rich.table", "robokin.cli.output.tables", "pydantic", "robokin.formats.mechanism_fields"}
     assert not (heavy | {"robokin.tables.rows"}) & names
 
 

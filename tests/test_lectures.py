@@ -9,8 +9,8 @@ import pytest
 from conftest import data
 
 import robokin
-from robokin.description.expressions import Scope
-from robokin.description.transforms import evaluate_transform
+from robokin.formats.number_expressions import Scope
+from robokin.formats.transform_expressions import evaluate_transform
 from robokin.spatial import map_point
 from robokin.units import Units
 

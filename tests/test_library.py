@@ -8,7 +8,7 @@ from conftest import data
 from kinematics.reference import rot, trans
 
 import robokin
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.model import Robot
 
 TABLES = data("tables.json")

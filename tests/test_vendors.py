@@ -10,7 +10,7 @@ from conftest import data
 from vendor_urdf import Urdf, figures
 
 import robokin
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.model import Robot
 
 VENDORS = data("vendors.json")

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.cli.arguments import in_units, joint_factors
-from robokin.inverse.result import Arc, Family, Result
+from robokin.inverse.solutions import Arc, Family, Result
 from robokin.model import Robot
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 DECIMALS = {"mm": 3, "cm": 3, "in": 4, "m": 5, "deg": 3, "rad": 5}
 """Decimals of a joint value: a hundredth of a millimetre or of a thousandth of a radian."""
@@ -52,7 +50,7 @@ def joints_can_move(numbers: Sequence[int], task: str) -> str:
 
 
 @dataclass(frozen=True)
-class Families:
+class FamilyWords:
     """Writes self-motions of a robot in units. `limits` tells whether the joint limits count."""
 
     robot: Robot

@@ -10,7 +10,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from robokin.cli.answer_families import DECIMALS, Families, is_within, joint_names, joints_can_move
+from robokin.cli.answer_families import DECIMALS, FamilyWords, is_within, joint_names, joints_can_move
 from robokin.cli.answer_verdicts import BLANK, verdict
 from robokin.cli.arguments import joint_factors
 from robokin.cli.held_joints import in_words
@@ -19,7 +19,7 @@ from robokin.cli.output.tables import WIDTH, heading, narrow_table, render
 from robokin.inverse.analysis import Analysis, Task, analysis_of
 from robokin.inverse.full_turns import MOST_TURNS, unlimited
 from robokin.inverse.hold import HeldArm, held_arm
-from robokin.inverse.result import Result, Solution
+from robokin.inverse.solutions import Result, Solution
 from robokin.model import Robot
 from robokin.units import Units
 
@@ -111,7 +111,7 @@ class AnswerTable:
         together = [tuple(i for i in joints if i not in self.idle) for joints in free]
         if any(len(joints) > len(rest) for joints, rest in zip(free, together, strict=True)):
             yield f"free: {joint_names(self.idle)} may have any value; each posture is listed once"
-        written = Families(self.robot, self.units, self.limits)
+        written = FamilyWords(self.robot, self.units, self.limits)
         for family in filter(is_within, result.families if result.solutions else ()):
             yield from written.lines(family, result, self.task)
         told = [set(family.joints) for family in result.families]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from robokin.cli.answer_families import joint_names, moves_within, solution_number
 from robokin.cli.output.numbers import counted
-from robokin.inverse.result import Result
+from robokin.inverse.solutions import Result
 
 BLANK = "\N{NO-BREAK SPACE}"
 """Keeps the method's name on one line; it is printed as a blank."""

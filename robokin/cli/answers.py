@@ -8,14 +8,14 @@ from dataclasses import dataclass, field, replace
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.cli.answer_families import Families
+from robokin.arrays import Array
+from robokin.cli.answer_families import FamilyWords
 from robokin.cli.arguments import joint_factors
 from robokin.cli.output.text import csv_header, csv_records, json_document, json_line, json_list
 from robokin.cli.records import poses_in
 from robokin.inverse.full_turns import turns_of_limits
-from robokin.inverse.result import BatchResult, Result, Solution
+from robokin.inverse.solutions import BatchResult, Result, Solution
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import CLOSES
 from robokin.model import Robot
@@ -26,7 +26,6 @@ from robokin.units import Units
 if TYPE_CHECKING:
     from robokin.cli.explanations import Explanation
 
-Array = NDArray[np.float64]
 
 TURNED_ROWS = 10_000
 """Full turns of so many postures are held at a time: with eight postures a target some 50 MB of rows."""
@@ -129,9 +128,9 @@ class Answers:
     # Plain data -------------------------------------------------------------------------------------------
 
     @property
-    def families(self) -> Families:
+    def families(self) -> FamilyWords:
         """Writes self-motions."""
-        return Families(self.robot, self.units, bool(self.arguments.get("limits", True)))
+        return FamilyWords(self.robot, self.units, bool(self.arguments.get("limits", True)))
 
     def record(self, target: Array, result: Result) -> dict[str, Any]:
         """The JSON document of an answer."""
@@ -160,7 +159,7 @@ class Answers:
     def explanation(self, target: Array, result: Result) -> Explanation:
         """The lesson behind an answer."""
         from robokin.cli.explanations import Explanation
-        from robokin.lessons.explain import explain_ik
+        from robokin.derivation.explain import explain_ik
 
         asked = {name: self.arguments[name] for name in ("task", "limits", "near") if name in self.arguments}
         return Explanation(self.robot, self.units, explain_ik(self.robot, target, **asked), result)
@@ -247,7 +246,7 @@ class Answers:
 
         How many columns the array has is known at the end only: a temporary file holds the solutions until then.
         """
-        from robokin.cli.output.arrays import ArrayWriter
+        from robokin.cli.output.array_files import ArrayWriter
 
         with tempfile.TemporaryFile() as kept:
             shapes: list[tuple[int, int]] = []

@@ -12,7 +12,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from robokin import __version__
-from robokin.cli import DONE, WRONG_INPUT
+from robokin.cli.statuses import DONE, WRONG_INPUT
 from robokin.errors import InputError, shown
 
 COMMANDS = {
@@ -113,7 +113,7 @@ class TextCommand(TyperCommand):
                     formatter.write(f"{'':{formatter.current_indent}}{example}\n")
 
 
-class Commands(TyperGroup):
+class CommandGroup(TyperGroup):
     """The group of commands, each loaded when it is asked for."""
 
     def get_params(self, ctx: Any) -> Any:
@@ -156,7 +156,7 @@ CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 
 app = typer.Typer(
     name="robokin",
-    cls=Commands,
+    cls=CommandGroup,
     help="Robot kinematics from a YAML file: robokin COMMAND ROBOT [options].",
     epilog="`robokin COMMAND --help` tells more. ROBOT is a name of `robokin list`, or a path to a description. "
     "Exit status: 0 done, and the answer is yes; 2 the input is wrong; 3 done, and the answer is no; 130 interrupted.",

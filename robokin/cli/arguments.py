@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.cli import say
+from robokin.arrays import Array
 from robokin.cli.output.numbers import counted
-from robokin.description.expressions import Scope, evaluate
-from robokin.description.library import load_any
+from robokin.cli.statuses import say
 from robokin.errors import ExpressionError, InputError, did_you_mean, shown
+from robokin.formats.library import load_any
+from robokin.formats.number_expressions import Scope, evaluate
 from robokin.model import Mechanism, Robot, WheeledBase
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 
 def load_entry(name: str, overrides: dict[str, str], mode: int | None = None) -> Robot | Mechanism | WheeledBase:

@@ -11,16 +11,16 @@ from robokin.cli.arguments import in_units, joint_factors
 from robokin.cli.checks import PASS, Item
 from robokin.cli.output.numbers import show
 from robokin.cli.submissions import Submission, read_plain_file
-from robokin.description.library import load_any
-from robokin.description.read import MAX_BYTES, read_bytes
 from robokin.errors import DescriptionError, InputError, did_you_mean, or_list, shown
-from robokin.grading.cells import Cell, wrong_cells
+from robokin.formats.library import load_any
+from robokin.formats.read import MAX_BYTES, read_bytes
 from robokin.grading.differences import Difference, difference_of
 from robokin.grading.feedback import Words, alike, joined
 from robokin.grading.mistakes import Mistake
 from robokin.grading.same_robot import OPEN, Comparison, compare_tables
 from robokin.grading.table_mistakes import table_mistake
 from robokin.grading.tolerance import Tolerance
+from robokin.grading.wrong_cells import Cell, wrong_cells
 from robokin.model import Mechanism, Robot, WheeledBase
 from robokin.units import Units
 

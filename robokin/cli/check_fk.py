@@ -7,24 +7,23 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.cli import say
+from robokin.arrays import Array
 from robokin.cli.arguments import in_units, joint_factors, parse_configuration
 from robokin.cli.check_mistakes import pose_mistake
-from robokin.cli.check_poses import Answer, PoseReader, pose_argument, pose_reader, pose_value
-from robokin.cli.check_rows import GREATEST, IDS, STUDENTS, NoAnswerError, Row, Sheet
+from robokin.cli.check_poses import AnsweredPose, PoseReader, pose_argument, pose_reader, pose_value
+from robokin.cli.check_rows import GREATEST, IDS, STUDENTS, AnswerFile, NoAnswerError, Row
 from robokin.cli.checks import PASS, Item
 from robokin.cli.output.numbers import show
+from robokin.cli.statuses import say
 from robokin.errors import InputError, shown
 from robokin.grading.feedback import Words, alike, joined
-from robokin.grading.poses import WRONG_ORIENTATION, WRONG_POSITION, pose_errors, pose_status
+from robokin.grading.pose_difference import WRONG_ORIENTATION, WRONG_POSITION, pose_errors, pose_status
 from robokin.grading.tolerance import Tolerance
 from robokin.kinematics.forward import forward_kinematics
 from robokin.model import Robot
 from robokin.units import Units
 
-Array = NDArray[np.float64]
 Value = TypeVar("Value")
 
 HALVES = {PASS: 1.0, WRONG_POSITION: 0.5, WRONG_ORIENTATION: 0.5}
@@ -90,7 +89,7 @@ class ForwardCheck:
         assert q is not None
         return (self.item(task, q, answer),)
 
-    def item(self, task: PoseTask, q: Array, answer: Answer) -> Item:
+    def item(self, task: PoseTask, q: Array, answer: AnsweredPose) -> Item:
         """The mark of a pose answered for q (n,) [rad | m]."""
         right = forward_kinematics(self.robot, q)
         position, angle = pose_errors(right, answer.T, answer.task)
@@ -127,7 +126,7 @@ class ForwardCheck:
 
     # Files ------------------------------------------------------------------------------------------------
 
-    def file(self, sheet: Sheet, key: Sheet | None) -> list[PoseTask]:
+    def file(self, sheet: AnswerFile, key: AnswerFile | None) -> list[PoseTask]:
         """The answers of a file; the questions are its own joint values, or those of a key."""
         if key is not None:
             return list(self.keyed(sheet, self.questions(key)))
@@ -150,12 +149,12 @@ class ForwardCheck:
         values = row.numbers(self.joints, self.robot.revolute.tolist(), self.units)
         return values * joint_factors(self.robot, self.units)
 
-    def questions(self, sheet: Sheet) -> dict[str, Array]:
+    def questions(self, sheet: AnswerFile) -> dict[str, Array]:
         """The joint values (n,) [rad | m] of each question of a key. Raises InputError for a key that is wrong."""
         sheet.require(self.joints, "the joint values of the question")
         return keyed_rows(sheet, self.configuration)
 
-    def keyed(self, sheet: Sheet, questions: dict[str, Array]) -> Iterator[PoseTask]:
+    def keyed(self, sheet: AnswerFile, questions: dict[str, Array]) -> Iterator[PoseTask]:
         """An answer for each student and question."""
         for student, id, rows in answers_by_question(sheet, list(questions)):
             task = PoseTask(id, None, questions[id], student, rows[0].line if rows else None)
@@ -170,7 +169,7 @@ class ForwardCheck:
                 yield replace(task, wrong=NoAnswerError(NOT_ANSWERED, "no line answers it"))
 
 
-def needed_reader(sheet: Sheet, robot: Robot, units: Units) -> PoseReader:
+def needed_reader(sheet: AnswerFile, robot: Robot, units: Units) -> PoseReader:
     """What reads the poses of a file of answers. Raises InputError."""
     reader = pose_reader(sheet, robot, units)
     if reader is None:
@@ -192,7 +191,7 @@ def without_repetitions(items: Iterable[Item]) -> Iterator[Item]:
         yield item
 
 
-def keyed_rows(sheet: Sheet, read: Callable[[Row], Value]) -> dict[str, Value]:
+def keyed_rows(sheet: AnswerFile, read: Callable[[Row], Value]) -> dict[str, Value]:
     """What a key says of each question. Raises InputError for a line that is wrong: a key is no answer."""
     id = sheet.column(IDS)
     if id is None:
@@ -210,7 +209,7 @@ def keyed_rows(sheet: Sheet, read: Callable[[Row], Value]) -> dict[str, Value]:
     return found
 
 
-def answers_by_question(sheet: Sheet, ids: list[str]) -> Iterator[tuple[str | None, str, list[Row]]]:
+def answers_by_question(sheet: AnswerFile, ids: list[str]) -> Iterator[tuple[str | None, str, list[Row]]]:
     """Each student with each question and the lines that answer it; a note names the lines that answer none.
 
     A line with a fault, or in another one's quotes, may name a student whose it is not: it stands for an answer only

@@ -7,20 +7,20 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.cli.arguments import joint_factors, parse_configuration, split_vector
 from robokin.cli.check_fk import HALVES, NOT_ANSWERED, REPEATED, answers_by_question, keyed_rows
 from robokin.cli.check_mistakes import joints_mistake, set_meant
-from robokin.cli.check_poses import Answer, PoseReader, no_number, pose_reader
-from robokin.cli.check_rows import BLANK, IDS, NOT_A_NUMBER, STUDENTS, NoAnswerError, Row, Sheet, sized
+from robokin.cli.check_poses import AnsweredPose, PoseReader, no_number, pose_reader
+from robokin.cli.check_rows import BLANK, IDS, NOT_A_NUMBER, STUDENTS, AnswerFile, NoAnswerError, Row, sized
 from robokin.cli.checks import NOT_DECIDED, PASS, Item
 from robokin.cli.joint_words import JointWords
 from robokin.cli.marking import undecided
 from robokin.cli.output.numbers import counted
 from robokin.cli.targets import Target
 from robokin.errors import InputError
-from robokin.grading.configurations import (
+from robokin.grading.configuration_marks import (
     Reached,
     countable,
     mark_set,
@@ -33,14 +33,12 @@ from robokin.grading.feedback import Words, alike, joined
 from robokin.grading.mistakes import loosened
 from robokin.grading.tolerance import Tolerance
 from robokin.inverse.analysis import Task
-from robokin.inverse.result import Result
+from robokin.inverse.solutions import Result
 from robokin.model import Robot
 from robokin.spatial import nearest_rotation, rotation_error, transform
 from robokin.spatial.rotations import DIGITS_LOST
-from robokin.tables.poses import CLEAN
+from robokin.tables.pose_columns import CLEAN
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 NONE = "none"
 """What an answer says that claims that there is no solution."""
@@ -284,7 +282,7 @@ class InverseCheck:
 
     # Files ------------------------------------------------------------------------------------------------
 
-    def file(self, sheet: Sheet, key: Sheet | None) -> list[JointsTask]:
+    def file(self, sheet: AnswerFile, key: AnswerFile | None) -> list[JointsTask]:
         """The answers of a file; lines of one student and question (id and target) are one."""
         sheet.require(self.joint_columns, "the answered joint values")
         if key is None:
@@ -299,7 +297,7 @@ class InverseCheck:
             tasks.append(JointsTask(id, target, tuple(rows), student, rows[0].line if rows else None))
         return [replace(task, known=known.get(task.id)) for task in tasks]
 
-    def own_targets(self, sheet: Sheet) -> list[JointsTask]:
+    def own_targets(self, sheet: AnswerFile) -> list[JointsTask]:
         """The answers of a file whose lines say their targets themselves."""
         reader = self.reader
         if reader is None:
@@ -318,7 +316,7 @@ class InverseCheck:
             for number, ((who, name, _, _), rows) in enumerate(groups.items(), start=1)
         ]
 
-    def targets(self, sheet: Sheet) -> dict[str, Target]:
+    def targets(self, sheet: AnswerFile) -> dict[str, Target]:
         """The target of each question of a key."""
         reader = pose_reader(sheet, self.robot, self.units)
         if reader is None:
@@ -331,7 +329,7 @@ def task_of(target: Target) -> Task:
     return "approach" if target.task == "approach" else "position" if target.task == "position" else "pose"
 
 
-def target_of(answer: Answer, line: int | None = None) -> Target:
+def target_of(answer: AnsweredPose, line: int | None = None) -> Target:
     """A pose as a target. Raises NoAnswerError for a rotation that is none."""
     R = answer.T[:3, :3]
     off = float(rotation_error(R))

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.cli.arguments import in_units, joint_factors
 from robokin.cli.check_poses import matrix_argument
 from robokin.cli.check_rows import NoAnswerError
@@ -20,8 +20,6 @@ from robokin.grading.tolerance import Tolerance
 from robokin.kinematics.jacobian import jacobian
 from robokin.model import Robot
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 ROWS = ("vx", "vy", "vz", "wx", "wy", "wz")
 IN_PLANE = {3: [0, 1, 5], 2: [0, 1]}
@@ -148,7 +146,7 @@ def jacobian_mistake(
     return None
 
 
-def _right(J: Array, given: Array, rows: list[int], robot: Robot, allowed: Tolerance) -> NDArray[np.bool_]:
+def _right(J: Array, given: Array, rows: list[int], robot: Robot, allowed: Tolerance) -> Flags:
     """(len(rows), n) which entries are within the tolerance; rows: which of the six rows J has."""
     right = np.zeros(J.shape, dtype=bool)
     for i, k in np.ndindex(J.shape):

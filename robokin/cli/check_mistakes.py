@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.cli.check_poses import Answer, pose_from
+from robokin.arrays import Array
+from robokin.cli.check_poses import AnsweredPose, pose_from
 from robokin.cli.check_rows import NoAnswerError
 from robokin.grading import mistakes
-from robokin.grading.configurations import reached
+from robokin.grading.configuration_marks import reached
 from robokin.grading.mistakes import Mistake
-from robokin.grading.poses import PASS, pose_errors, pose_status
+from robokin.grading.pose_difference import PASS, pose_errors, pose_status
 from robokin.grading.tolerance import Tolerance
 from robokin.inverse.analysis import Task
 from robokin.kinematics.forward import forward_kinematics
@@ -20,13 +20,11 @@ from robokin.model import Robot
 from robokin.spatial import rotation_from_axis_angle, transform
 from robokin.units import Units
 
-Array = NDArray[np.float64]
-
 ANGLES = {"rpy": True, "euler": True, "planar": True}
 """Kinds of poses whose numbers have angles among them."""
 
 
-def pose_mistake(robot: Robot, q: Array, answer: Answer, units: Units, allowed: Tolerance) -> Mistake | None:
+def pose_mistake(robot: Robot, q: Array, answer: AnsweredPose, units: Units, allowed: Tolerance) -> Mistake | None:
     """The known mistake in a wrong pose for q (n,) [rad | m], or None."""
     right = forward_kinematics(robot, q)
     # What is off by a little is in no other unit: that its digits were meant for one is then no excuse.
@@ -49,7 +47,7 @@ def _is(right: Array, T: Array, task: str, allowed: Tolerance) -> bool:
 
 
 def _poses_meant(
-    robot: Robot, answer: Answer, units: Units, allowed: Tolerance
+    robot: Robot, answer: AnsweredPose, units: Units, allowed: Tolerance
 ) -> Iterator[tuple[Mistake, Array, Tolerance]]:
     """What a pose may have been meant as (4, 4) [m], each with what it may be off by."""
     values, kind = answer.values, answer.kind

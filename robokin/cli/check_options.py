@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robokin.cli import DONE, NO
 from robokin.cli.options import choose, output_format
+from robokin.cli.statuses import DONE, NO
 from robokin.errors import InputError, shown
 from robokin.grading.feedback import ANSWER, LEVELS, PART
 from robokin.grading.guarded import BUDGET

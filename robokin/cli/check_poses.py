@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.cli.arguments import split_vector
-from robokin.cli.check_rows import BLANK, NoAnswerError, Row, Sheet, number
+from robokin.cli.check_rows import BLANK, AnswerFile, NoAnswerError, Row, number
 from robokin.cli.output.numbers import counted
 from robokin.cli.targets import parse_target
-from robokin.description.expressions import Scope
-from robokin.description.transforms import STEPS, evaluate_transform
 from robokin.errors import ExpressionError, InputError, shown
+from robokin.formats.number_expressions import Scope
+from robokin.formats.transform_expressions import STEPS, evaluate_transform
 from robokin.kinematics.structure import structure_of
 from robokin.model import Robot
 from robokin.spatial import (
@@ -26,10 +26,8 @@ from robokin.spatial import (
     transform,
 )
 from robokin.tables.orientations import MATRIX, ORIENTATIONS, pose_columns
-from robokin.tables.poses import ORDER
+from robokin.tables.pose_columns import ORDER
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 NO_ROTATION = "not a rotation"
 
@@ -43,7 +41,7 @@ CALL = re.compile(r"\s*([A-Za-z]+)\s*\(")
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class AnsweredPose:
     """A pose (4, 4) [m], whose upper left part may be no exact rotation, and what of it counts: pose or position.
 
     values: the numbers (k,) that it was read from, in the units, and `kind` what they are; none of an expression.
@@ -64,7 +62,7 @@ class PoseReader:
     robot: Robot
     units: Units
 
-    def read(self, row: Row) -> Answer:
+    def read(self, row: Row) -> AnsweredPose:
         """The pose of a row. Raises NoAnswerError."""
         turns = self.kind == "planar" or (self.kind in ORIENTATIONS and ORIENTATIONS[self.kind].angles)
         angles = [turns and name not in ("x", "y", "z") for name in self.names]
@@ -75,7 +73,7 @@ class PoseReader:
         return tuple(row.cells[name] for name in self.names)
 
 
-def pose_reader(sheet: Sheet, robot: Robot, units: Units) -> PoseReader | None:
+def pose_reader(sheet: AnswerFile, robot: Robot, units: Units) -> PoseReader | None:
     """What reads the poses of a sheet; None where it has no columns of any."""
     have = set(sheet.columns)
     for kind in ORDER:
@@ -97,10 +95,10 @@ def pose_reader(sheet: Sheet, robot: Robot, units: Units) -> PoseReader | None:
     return None
 
 
-def pose_from(values: Array, kind: str, robot: Robot, units: Units) -> Answer:
+def pose_from(values: Array, kind: str, robot: Robot, units: Units) -> AnsweredPose:
     """A pose from numbers in the units. Raises NoAnswerError for what is none."""
     T, task = _pose_and_task(values, kind, robot, units)
-    return Answer(T, task, values, kind)
+    return AnsweredPose(T, task, values, kind)
 
 
 def _pose_and_task(values: Array, kind: str, robot: Robot, units: Units) -> tuple[Array, str]:
@@ -132,7 +130,7 @@ def _pose_and_task(values: Array, kind: str, robot: Robot, units: Units) -> tupl
     return transform(R, p), "pose"
 
 
-def pose_argument(text: str, robot: Robot, units: Units) -> Answer:
+def pose_argument(text: str, robot: Robot, units: Units) -> AnsweredPose:
     """The pose that an argument of --expect says: numbers, a matrix, or a transform expression.
 
     Raises NoAnswerError for an answer that is blank or no number, InputError for what cannot be read.
@@ -142,7 +140,7 @@ def pose_argument(text: str, robot: Robot, units: Units) -> Answer:
     call = CALL.match(text)
     if call and call.group(1).lower() in STEPS:
         try:
-            return Answer(evaluate_transform(text, Scope(degrees=units.degrees), units), "pose")
+            return AnsweredPose(evaluate_transform(text, Scope(degrees=units.degrees), units), "pose")
         except ExpressionError as error:
             raise InputError(f"--expect: {error}") from None
     if text.lstrip().startswith("[["):

@@ -6,17 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.cli import say
+from robokin.arrays import Array
 from robokin.cli.sheet_records import SheetReader
+from robokin.cli.statuses import say
 from robokin.cli.submissions import OPEN_PLACES, open_plain_file
 from robokin.errors import ExpressionError, InputError, did_you_mean, shown
 from robokin.files import open_input
-from robokin.tables.cells import PLAIN, Decimals, decimals_of, number_in
+from robokin.tables.number_cells import PLAIN, Decimals, decimals_of, number_in
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 IDS = ("id", "question", "target")
 """Columns that name a question; the first of them that is there does."""
@@ -84,7 +82,7 @@ def sized(value: float) -> float:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class AnswerFile:
     """A file of rows below a header."""
 
     name: str
@@ -103,13 +101,13 @@ class Sheet:
                 raise InputError(f"{self.name}: found the columns {found}, expected {name} as well: {what}{hint}")
 
 
-def read_key(source: str) -> Sheet:
+def read_key(source: str) -> AnswerFile:
     """The questions: the teacher's own file, whatever kind of file it is. Raises InputError."""
     with open_input(source, "a CSV of questions") as (stream, name):
         return _sheet(SheetReader(stream, name, say))
 
 
-def read_sheet(source: str, *, follow: bool) -> Sheet:
+def read_sheet(source: str, *, follow: bool) -> AnswerFile:
     """A CSV with a header, as RFC 4180 says. A line that is no row of it is kept with its fault.
 
     follow: whether a symbolic link is. Raises InputError for what is no plain file and no text, has no header, or names
@@ -122,7 +120,7 @@ def read_sheet(source: str, *, follow: bool) -> Sheet:
         return _sheet(SheetReader(stream, source, say))
 
 
-def _sheet(reader: SheetReader) -> Sheet:
+def _sheet(reader: SheetReader) -> AnswerFile:
     name = reader.name
     columns: tuple[str, ...] | None = None
     rows = []
@@ -142,7 +140,7 @@ def _sheet(reader: SheetReader) -> Sheet:
         raise InputError(f"{name}: found a header alone, expected answers below it")
     decimals = decimals_of(reader.separator, (cell for row in rows for cell in row.cells.values()))
     rows = [replace(row, decimals=decimals) for row in rows]
-    return Sheet(name, columns, tuple(rows))
+    return AnswerFile(name, columns, tuple(rows))
 
 
 def _header(cells: list[str], place: str) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ ENDINGS = (".yaml", ".yml")
 
 def robots(incomplete: str) -> list[str]:
     """Names of the library that start so, in any case, and descriptions and folders of the path begun."""
-    from robokin.description.library import library_names
+    from robokin.formats.library import library_names
 
     word = incomplete.casefold()
     return [name for name in library_names() if name.casefold().startswith(word)] + files(incomplete, ENDINGS)
@@ -40,8 +40,8 @@ def files(incomplete: str, endings: tuple[str, ...]) -> list[str]:
 
 def named_poses(incomplete: str) -> list[str]:
     """Named poses of the first robot that the line names."""
-    from robokin.description.library import library_names, load_any
     from robokin.errors import RobokinError
+    from robokin.formats.library import library_names, load_any
     from robokin.model import Robot
 
     library = {name.casefold() for name in library_names()}

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.cli import say
+from robokin.arrays import Array
 from robokin.cli.arguments import parse_configuration
-from robokin.description.typed_angles import unit_of_values
+from robokin.cli.statuses import say
 from robokin.errors import InputError
+from robokin.formats.typed_angles import unit_of_values
 from robokin.model import Robot
 from robokin.tables.carried import Carried
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 
 def configurations(
@@ -51,7 +49,7 @@ def read_configurations(source: str, robot: Robot, units: Units, carried: Carrie
 
     `carried` takes what is not understood.
     """
-    from robokin.tables.joints import JointColumns
+    from robokin.tables.joint_columns import JointColumns
     from robokin.tables.rows import read_rows
 
     for i, block in enumerate(read_rows(source, JointColumns(robot, units), carried, say)):

@@ -9,8 +9,8 @@ import numpy as np
 
 from robokin.cli.arguments import in_units, joint_factors
 from robokin.cli.records import kind_of, poses_in, zero_record
-from robokin.description.library import load_any
 from robokin.errors import DescriptionError, InputError, Note
+from robokin.formats.library import load_any
 from robokin.kinematics.structure import structure_of
 from robokin.mobility.count import grubler
 from robokin.model import Joint, Mechanism, Robot, WheeledBase

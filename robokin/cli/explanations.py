@@ -10,20 +10,18 @@ from itertools import groupby
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.cli.arguments import joint_factors
 from robokin.cli.output.numbers import counted
-from robokin.inverse.branches import branch_names
-from robokin.inverse.result import Result
+from robokin.derivation.explain import End, Lesson
+from robokin.derivation.formulas import tokens
+from robokin.derivation.worked_steps import Quantity, Step
+from robokin.inverse.solution_names import branch_names
+from robokin.inverse.solutions import Result
 from robokin.inverse.verify import SAME, wrapped
-from robokin.lessons.explain import End, Lesson
-from robokin.lessons.formulas import tokens
-from robokin.lessons.sheet import Quantity, Step
 from robokin.model import Robot
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 WIDTH = 80
 """Columns of a page."""

@@ -11,7 +11,7 @@ import os
 import signal
 import sys
 
-from robokin.cli import say
+from robokin.cli.statuses import say
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:  # this module comes first of all and must be quick

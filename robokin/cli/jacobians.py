@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from typing import IO, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.cli.arguments import joint_factors
 from robokin.cli.output.text import csv_header, csv_records, json_document, json_line, json_list, page
 from robokin.errors import InputError
@@ -27,8 +27,6 @@ from robokin.model import Robot
 from robokin.records.envelope import envelope
 from robokin.tables.carried import Carried, nothing
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 ROWS = ("vx", "vy", "vz", "wx", "wy", "wz")
 """The Jacobian's rows: linear velocity, then angular."""
@@ -63,7 +61,7 @@ class Jacobians:
     def write(self, kind: str, blocks: Iterable[Array], stream: IO[bytes]) -> Iterator[bytes]:
         """The answers to blocks of configurations (m, n) in the units; arrays go to the stream themselves."""
         if kind == "npy":
-            from robokin.cli.output.arrays import ArrayWriter
+            from robokin.cli.output.array_files import ArrayWriter
 
             writer = ArrayWriter(stream, (6, self.robot.n))
             for _, found in self.found(blocks):

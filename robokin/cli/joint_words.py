@@ -5,21 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from robokin.arrays import Array
 from robokin.cli.arguments import in_units, joint_factors
 from robokin.cli.check_poses import pose_value
 from robokin.cli.checks import PASS
 from robokin.cli.output.numbers import show
 from robokin.cli.targets import Target
 from robokin.errors import counted
-from robokin.grading.configurations import OUTSIDE, Reached, SetMark
+from robokin.grading.configuration_marks import OUTSIDE, Reached, SetMark
 from robokin.grading.feedback import Words, alike, joined
 from robokin.model import Robot
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 TOLD = 20
 """Answers of a set of which it is said one by one what is wrong; `answers` has all."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from robokin.description.library_index import Entry
 from robokin.errors import nearest, or_list, shown
+from robokin.formats.library_index import Entry
 
 SHORT = 3
 """Letters of a word that in a sentence must stand alone: every other source has a URDF, and few a UR."""

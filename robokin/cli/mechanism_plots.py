@@ -6,9 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from robokin.arrays import Array
 from robokin.cli.output.text import csv_records, json_document, json_line
 from robokin.errors import InputError, or_list
 from robokin.mobility.assembly import missing_geometry
@@ -17,8 +15,6 @@ from robokin.model import Mechanism
 from robokin.pictures.mechanism_scene import MechanismScene, mechanism_scene
 from robokin.records.envelope import envelope
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 ENDINGS = (".png", ".svg", ".pdf", ".html")
 
@@ -33,7 +29,7 @@ def check_drawable(mechanism: Mechanism, output: str | None, option: str) -> Non
         if ending not in ENDINGS:
             raise InputError(f"{option}: found '{output}', expected a name that ends with {or_list(ENDINGS)}")
         if ending != ".html":
-            from robokin.pictures.stills import require_matplotlib
+            from robokin.pictures.workspace_stills import require_matplotlib
 
             require_matplotlib(ending)
     if len(missing_geometry(mechanism)) == len(mechanism.joints):
@@ -54,7 +50,7 @@ def picture_of(
 ) -> bytes:  # fmt: skip
     """A mechanism as a file with this ending; planar ones as a flat drawing, unless a view is given."""
     if ending != ".html" and mechanism.space == "planar" and view is None:
-        from robokin.pictures.mechanisms import mechanism_picture
+        from robokin.pictures.planar_stills import mechanism_picture
 
         return mechanism_picture(mechanism, moved, paths, units, ending[1:])
     scene = mechanism_scene(mechanism, moved, paths, units, view, note)

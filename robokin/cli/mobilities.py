@@ -10,9 +10,9 @@ from robokin.records.envelope import envelope
 from robokin.units import Units
 
 if TYPE_CHECKING:
+    from robokin.mobility.manoeuvrability import Manoeuvrability
     from robokin.mobility.output import Output
     from robokin.mobility.verdict import Mobility
-    from robokin.mobility.wheeled import Manoeuvrability
 
 NAMES = {name: letter for letter, (name, _) in LETTERS.items()}
 

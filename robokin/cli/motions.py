@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.cli.arguments import in_units, parse_numbers, split_vector
-from robokin.cli.output.arrays import ArrayWriter
+from robokin.cli.output.array_files import ArrayWriter
 from robokin.cli.output.tables import heading, number_table, render
 from robokin.cli.output.text import csv_records, csv_rows, json_document, json_line
 from robokin.cli.records import poses_in
@@ -21,8 +21,6 @@ from robokin.model import Mechanism
 from robokin.records.envelope import envelope
 from robokin.spatial import rpy_from_rotation
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 PAGE_COLUMNS = 6
 """Columns of numbers that fit beside one another on a page."""
@@ -54,7 +52,7 @@ def parse_point(text: str, mechanism: Mechanism, units: Units) -> Point:
     return Point(link, np.append(numbers, 0.0)[:3] * units.metres)
 
 
-class Motion:
+class MotionRows:
     """A trace in units, with the paths of points.
 
     values: (m, f) joint values; paths: (m, points, 3); numbers: (m, k) all columns.

@@ -7,19 +7,17 @@ from dataclasses import dataclass
 from typing import IO, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.cli.arguments import in_units, joint_factors
 from robokin.cli.output.numbers import counted, show
 from robokin.cli.output.text import csv_header, csv_rows, json_document, json_line
 from robokin.cli.records import poses_in
-from robokin.inverse.path import Event, Path
+from robokin.inverse.joint_paths import Event, Path
 from robokin.model import Robot
 from robokin.records.envelope import envelope
 from robokin.tables.orientations import pose_columns, pose_table
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 SAME = 1e-6
 """Joint values [rad | m] that differ by less are one."""
@@ -116,7 +114,7 @@ class PathAnswer:
     def least(self) -> float:
         """The least manipulability on the way, of the Jacobian in the length unit and radians."""
         from robokin.cli.jacobians import Jacobians
-        from robokin.inverse.path import line_task
+        from robokin.inverse.joint_paths import line_task
         from robokin.kinematics.velocity import differential_kinematics
 
         task: Any = "position" if self.kind == "line" and line_task(self.robot) == "position" else None
@@ -145,7 +143,7 @@ class PathAnswer:
 
     def page(self) -> Iterator[bytes]:
         """A summary, and some rows."""
-        from robokin.cli.output.columns import NumberColumns
+        from robokin.cli.output.number_columns import NumberColumns
         from robokin.cli.output.tables import heading, pairs, render
 
         path = self.path

@@ -9,15 +9,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.cli.arguments import in_units, joint_factors, parse_numbers, split_vector
 from robokin.cli.output.numbers import show
 from robokin.cli.output.text import csv_records, json_document, json_line
 from robokin.cli.records import pose_records, poses_in
 from robokin.cli.targets import Target, parse_target
 from robokin.errors import InputError, or_list, shown
-from robokin.inverse.result import Result
+from robokin.inverse.solutions import Result
 from robokin.inverse.solve import solve_many
 from robokin.kinematics.forward import forward_kinematics, row_frames
 from robokin.kinematics.structure import structure_of
@@ -26,8 +26,6 @@ from robokin.pictures.arm import arm_of, body_frames, line_of
 from robokin.pictures.arm_scene import Posture, Scene, usual_view
 from robokin.records.envelope import envelope
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 ENDINGS = (".png", ".svg", ".pdf", ".html")
 
@@ -40,7 +38,7 @@ FARTHEST = 1e6
 
 
 @dataclass(frozen=True, eq=False)
-class Asked:
+class AskedPostures:
     """The postures to draw, the target with its answer if there is one, and sentences for the user."""
 
     postures: tuple[Posture, ...]
@@ -60,7 +58,7 @@ def ending_of(output: str) -> str:
     if ending not in ENDINGS:
         raise InputError(f"--output: found '{output}', expected a name that ends with {or_list(ENDINGS)}")
     if ending != ".html":
-        from robokin.pictures.stills import require_matplotlib
+        from robokin.pictures.workspace_stills import require_matplotlib
 
         require_matplotlib(ending)
     return ending
@@ -109,7 +107,7 @@ def wanted_target(ik: str | None, options: dict[str, str | None], robot: Robot, 
     return parse_target(options, robot, units) if given else None
 
 
-def asked(robot: Robot, units: Units, given: Sequence[Array], target: Target | None) -> Asked:
+def asked(robot: Robot, units: Units, given: Sequence[Array], target: Target | None) -> AskedPostures:
     """What is drawn for configurations (n,) [rad | m] and a target.
 
     The first configuration is drawn solid, all others pale. With a target and no configuration the first solution
@@ -118,14 +116,16 @@ def asked(robot: Robot, units: Units, given: Sequence[Array], target: Target | N
     if target is None:
         # A single arm needs no name beside it: its joint values stand below the title.
         labels = [values_text(q, robot, units) if len(given) > 1 else "" for q in given]
-        return Asked(tuple(Posture(q, label, k > 0) for k, (q, label) in enumerate(zip(given, labels, strict=True))))
+        return AskedPostures(
+            tuple(Posture(q, label, k > 0) for k, (q, label) in enumerate(zip(given, labels, strict=True)))
+        )
     if np.max(np.abs(target.T[:3, 3])) > FARTHEST:
         raise InputError("the target is too far away for a picture, expected less")
     result = solve_many(robot, target.T[None], task=target.task)[0]  # type: ignore[arg-type]
     return with_solutions(robot, units, given, target, result)
 
 
-def with_solutions(robot: Robot, units: Units, given: Sequence[Array], target: Target, result: Result) -> Asked:
+def with_solutions(robot: Robot, units: Units, given: Sequence[Array], target: Target, result: Result) -> AskedPostures:
     """What is drawn for configurations (n,) [rad | m] and a target with its answer."""
     found = [(solution.q, solution.branch) for solution in result.solutions[:MOST_GHOSTS]]
     notes = list(target.notes)
@@ -140,11 +140,11 @@ def with_solutions(robot: Robot, units: Units, given: Sequence[Array], target: T
             gap = result.nearest.position_error / units.metres, result.nearest.angle_error / units.radians
             label = f"nearest: position error {gap[0]:.4g} {units.length}, angle error {gap[1]:.4g} {units.angle}"
             postures.append(Posture(result.nearest.q, label, ghost=bool(given)))
-    return Asked(tuple(postures), target, result, tuple(notes))
+    return AskedPostures(tuple(postures), target, result, tuple(notes))
 
 
 def scene_of(
-    robot: Robot, units: Units, wanted: Asked, name: str, view: tuple[float, float] | None, frames: bool
+    robot: Robot, units: Units, wanted: AskedPostures, name: str, view: tuple[float, float] | None, frames: bool
 ) -> Scene:
     """The picture of all that is asked for; `name` is what the first configuration is called."""
     usual, flat = usual_view(robot)
@@ -177,7 +177,7 @@ def values_text(q: Array, robot: Robot, units: Units) -> str:
 # Without a picture ----------------------------------------------------------------------------------------
 
 
-def answer(kind: str, scene: Scene, wanted: Asked) -> Iterator[bytes]:
+def answer(kind: str, scene: Scene, wanted: AskedPostures) -> Iterator[bytes]:
     """What a picture shows, as text or as plain data."""
     robot, units = scene.arm.robot, scene.units
     if kind == "table":
@@ -200,7 +200,7 @@ def answer(kind: str, scene: Scene, wanted: Asked) -> Iterator[bytes]:
     yield json_document(document)
 
 
-def arms_record(scene: Scene, wanted: Asked) -> dict[str, Any]:
+def arms_record(scene: Scene, wanted: AskedPostures) -> dict[str, Any]:
     """The document of `robokin plot` about an arm."""
     target = None if scene.target is None else poses_in(scene.target.copy(), scene.units).tolist()
     more: dict[str, Any] = {"target": target, "reachable": None, "reason": None}
@@ -234,7 +234,7 @@ def _record(scene: Scene, posture: Posture) -> dict[str, Any]:
     return record
 
 
-def _page(scene: Scene, wanted: Asked) -> bytes:
+def _page(scene: Scene, wanted: AskedPostures) -> bytes:
     from robokin.cli.output.tables import heading, pairs, render
     from robokin.pictures.arm_text import arm_text
 

@@ -3,34 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.cli.arguments import joint_factors
 from robokin.cli.output.numbers import show_range
-from robokin.cli.records import poses_in
+from robokin.cli.records import PoseBlock, poses_in
 from robokin.errors import InputError
 from robokin.kinematics.forward import forward_kinematics, row_frames
 from robokin.model import Robot
 from robokin.units import Units
-
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Poses:
-    """A block of answers: q (m, n), T (m, 4, 4), frames (m, rows, 4, 4) or None, in the units.
-
-    `within` (m,) tells whether each q respects the limits, `first` is the number of the block's first one.
-    """
-
-    first: int
-    q: Array
-    within: NDArray[np.bool_]
-    T: Array
-    frames: Array | None
 
 
 class PoseMaker:
@@ -44,7 +27,7 @@ class PoseMaker:
         self.outside = 0
         self.first_outside = 0
 
-    def of(self, blocks: Iterable[Array]) -> Iterator[Poses]:
+    def of(self, blocks: Iterable[Array]) -> Iterator[PoseBlock]:
         """The poses at blocks of configurations (m, n) in the units. Raises InputError where there is none."""
         for q in blocks:
             si = q * self.factors
@@ -59,7 +42,7 @@ class PoseMaker:
                     finite = np.isfinite(result).reshape(len(q), -1).all(axis=1)
                     number = self.count + int(finite.argmin()) + 1
                     raise InputError(f"configuration {number}: the pose is too far away for a number, expected less")
-            yield Poses(self.count + 1, q + 0.0, within, T, frames)
+            yield PoseBlock(self.count + 1, q + 0.0, within, T, frames)
             if not within.all():
                 if not self.outside:
                     self.first_outside = self.count + int(within.argmin()) + 1

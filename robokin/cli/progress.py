@@ -9,7 +9,7 @@ import threading
 import time
 
 from robokin.cli.interruptions import in_order
-from robokin.workspace.stages import followed
+from robokin.jobs.stages import followed
 
 PATIENCE = 1.0
 """Seconds of work before the bar appears: what is shorter needs none."""
@@ -88,7 +88,7 @@ class Stages:
             self.thread.join()
         self.followed.__exit__(None, None, None)
         if kind is not None and issubclass(kind, KeyboardInterrupt):
-            from robokin.cli import say
+            from robokin.cli.statuses import say
 
             say(f"after {time.monotonic() - self.began:.0f} s: {self._state()}")
         self.interrupted.__exit__(None, None, None)

@@ -3,28 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.model import Mechanism, Robot, WheeledBase
 from robokin.records.envelope import envelope
 from robokin.spatial import axis_angle_from_rotation
 from robokin.tables.orientations import orientation
 from robokin.units import Units
 
-if TYPE_CHECKING:
-    from robokin.cli.poses import Poses
-
-Array = NDArray[np.float64]
-
-
 KINDS = {Robot: "robot", Mechanism: "mechanism", WheeledBase: "wheeled"}
 """What the key `kind` says of that which a description describes."""
 
 ZERO_DECIMALS = 9
 """Decimals of the place at zero: 1e-9 m and less is far below what a table states, and far above rounding."""
+
+
+@dataclass(frozen=True)
+class PoseBlock:
+    """A block of answers: q (m, n), T (m, 4, 4), frames (m, rows, 4, 4) or None, in the units.
+
+    `within` (m,) tells whether each q respects the limits, `first` is the number of the block's first one.
+    """
+
+    first: int
+    q: Array
+    within: Flags
+    T: Array
+    frames: Array | None
 
 
 def kind_of(entry: Robot | Mechanism | WheeledBase) -> str:
@@ -73,7 +82,9 @@ def frame_record(T: Array, units: Units, kind: str | None = None) -> dict[str, A
     return record | {key: value for key, value in pose.items() if key not in record}
 
 
-def configuration_records(robot: Robot, units: Units, poses: Poses, more: Sequence[str]) -> Iterator[dict[str, Any]]:
+def configuration_records(
+    robot: Robot, units: Units, poses: PoseBlock, more: Sequence[str]
+) -> Iterator[dict[str, Any]]:
     """The answers of `fk` for a block of configurations; `more` orientations than all have."""
     head = envelope("robot", robot.id, units)
     names = [str(i) for i in range(1, len(robot.rows) + 1)]

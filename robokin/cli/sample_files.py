@@ -18,11 +18,11 @@ from pathlib import Path
 from typing import Any
 
 from robokin.cli.interruptions import UNFINISHED, in_order
-from robokin.cli.output.sink import Place
+from robokin.cli.output.sink import Destination
 from robokin.cli.sample_rows import BLOCK, Samples
 from robokin.errors import InputError, OutputError
 from robokin.files import open_path, read_up_to
-from robokin.workspace import parallel
+from robokin.jobs import ordered_map
 
 MOST_OF_A_STATE = 1 << 16
 """Bytes of `name.part.json`: it has a few hundred."""
@@ -46,7 +46,7 @@ def write_samples(
     A full disk and Ctrl-C keep the whole blocks, and say so.
     """
     total = samples.count  # what is wrong with the samples is said before a file is touched
-    place = Place(output, "--output")
+    place = Destination(output, "--output")
     if place.special and resume:
         raise InputError(f"--resume: {output} is a pipe or a device, expected a file")
     with (
@@ -55,7 +55,7 @@ def write_samples(
     ):
         before = part.done
         first = -(-part.done // BLOCK)
-        blocks = parallel.in_order(samples.block, range(first, -(-total // BLOCK)), cores)
+        blocks = ordered_map.in_order(samples.block, range(first, -(-total // BLOCK)), cores)
         with contextlib.closing(_closable(blocks)) as whole:
             for data in whole:
                 part.append(data, min(part.done + BLOCK, total))
@@ -102,7 +102,7 @@ class _Part:
                 if isinstance(error, OSError):
                     raise OutputError(f"--output {output}: {error.strerror}, {sentence}") from None
                 if isinstance(error, KeyboardInterrupt | SystemExit):
-                    from robokin.cli import say
+                    from robokin.cli.statuses import say
 
                     say(f"--output {output}: {sentence}")
                 raise
@@ -272,7 +272,7 @@ class _Straight:
 
 
 @contextlib.contextmanager
-def _straight(place: Place, samples: Samples) -> Iterator[_Straight]:
+def _straight(place: Destination, samples: Samples) -> Iterator[_Straight]:
     try:
         with place.straight() as stream:
             stream.write(samples.header())

@@ -11,20 +11,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.cli.arguments import joint_factors
 from robokin.cli.output.text import csv_header, csv_rows, json_line
 from robokin.errors import InputError, or_list
+from robokin.jobs.sequences import Kind
 from robokin.kinematics.forward import forward_kinematics
 from robokin.records.envelope import envelope
 from robokin.tables.orientations import orientation, orientation_columns
 from robokin.units import Units
 from robokin.workspace.sampling import joint_values, positions, sample_count
-from robokin.workspace.sequence import Kind
 from robokin.workspace.space import Space
-
-Array = NDArray[np.float64]
 
 ENDINGS = {".csv": "csv", ".jsonl": "jsonl", ".npy": "npy", ".ply": "ply"}
 """Formats by the ending of the output's name."""

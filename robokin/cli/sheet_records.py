@@ -14,8 +14,8 @@ from itertools import chain
 from typing import IO, NamedTuple
 
 from robokin.errors import InputError, counted
-from robokin.tables.records import Record, RecordReader
-from robokin.tables.text import MAX_ROW, Say
+from robokin.tables.csv_records import Record, RecordReader
+from robokin.tables.text_source import MAX_ROW, Say
 
 LARGEST = 64 << 20
 """Bytes of a file of answers; it is held as a whole, since answers to one question may stand anywhere in it."""

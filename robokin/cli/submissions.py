@@ -16,8 +16,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import IO
 
-from robokin.description.library import is_path
 from robokin.errors import InputError, or_list, shown
+from robokin.formats.library import is_path
 
 ENDINGS = (".yaml", ".yml")
 """Names of descriptions in a folder; others there are no answers."""

@@ -43,7 +43,7 @@ def form_of(output: str | None, chosen: str | None, *, latex: bool, python: bool
 
 def write_symbolic(robot: Robot, units: Units, form: str, output: str | None, *, numbers: bool, frames: bool) -> None:
     """Write the matrices of a robot in a form. Raises InputError when they are too long to be of use."""
-    from robokin.symbolic.matrices import symbolic_kinematics
+    from robokin.derivation.symbolic_kinematics import symbolic_kinematics
 
     symbolic = symbolic_kinematics(robot, units, numbers=numbers, frames=frames)
     with sink(output) as stream:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 import textwrap
 
+from robokin.derivation.symbolic_kinematics import SymbolicKinematics
+from robokin.derivation.written_sums import written
 from robokin.model import Robot
-from robokin.symbolic.matrices import SymbolicKinematics
-from robokin.symbolic.written import written
 from robokin.units import Units
 
 WIDTH = 100

@@ -6,13 +6,13 @@ import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
-from robokin.cli.output.columns import PAGE
+from robokin.cli.output.number_columns import PAGE
 from robokin.cli.output.numbers import show
+from robokin.derivation.symbolic_kinematics import SymbolicKinematics
+from robokin.derivation.symbolic_product import Matrix
+from robokin.derivation.written_sums import latex, latex_function, latex_name, written
 from robokin.model import Robot
 from robokin.records.envelope import envelope
-from robokin.symbolic.matrices import SymbolicKinematics
-from robokin.symbolic.product import Matrix
-from robokin.symbolic.written import latex, latex_function, latex_name, written
 from robokin.units import Units
 
 COLUMNS = "nsap"

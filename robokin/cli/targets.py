@@ -9,15 +9,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.cli import say
+from robokin.arrays import Array
 from robokin.cli.arguments import parse_numbers, split_vector
-from robokin.description.expressions import Scope
-from robokin.description.matrices import pose_from_matrix
-from robokin.description.transforms import evaluate_transform
+from robokin.cli.statuses import say
 from robokin.errors import ExpressionError, InputError
 from robokin.files import open_input, read_up_to
+from robokin.formats.number_expressions import Scope
+from robokin.formats.printed_matrices import pose_from_matrix
+from robokin.formats.transform_expressions import evaluate_transform
 from robokin.model import Robot
 from robokin.spatial import (
     rotation_from_euler,
@@ -26,11 +26,9 @@ from robokin.spatial import (
     transform,
 )
 from robokin.spatial.rotations import DIGITS_LOST
-from robokin.tables.poses import near_enough
-from robokin.tables.targets import one_pose, pose_of
+from robokin.tables.pose_columns import near_enough
+from robokin.tables.target_rows import one_pose, pose_of
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 MOST_OF_A_MATRIX = 1 << 20
 """Bytes of a file with one pose: a page, were it written with a thousand digits."""

@@ -54,7 +54,7 @@ OPTION_WORDS = {
 
 def command_hint(name: str, known: Iterable[str]) -> str:
     """What to say after a command that does not exist."""
-    from robokin.description.library import library_names
+    from robokin.formats.library import library_names
 
     word = name.casefold().replace("_", "-")
     commands = list(known)

@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from robokin.cli.arguments import parse_numbers
-from robokin.cli.output.sink import Place, sink
+from robokin.cli.output.sink import Destination, sink
 from robokin.cli.output.text import csv_records, json_document, json_line, json_list
 from robokin.cli.workspaces import WORDS, Cut, flat_row, workspace_record
 from robokin.errors import InputError, or_list
+from robokin.jobs.stages import about, stage
 from robokin.model import Robot
 from robokin.pictures.compose import (
     arm_line,
@@ -23,16 +24,15 @@ from robokin.pictures.compose import (
     rings_about,
     solid_views,
 )
-from robokin.pictures.freedom import degrees_in
+from robokin.pictures.orientation_picture import degrees_in
 from robokin.pictures.picture import Panel, Picture
 from robokin.pictures.views import View, plane_view, section_view, slice_view
 from robokin.units import Units
 from robokin.workspace.analyse import analyse_workspace
-from robokin.workspace.cells import cells_of
 from robokin.workspace.membership import Membership, finitely_many
-from robokin.workspace.result import Workspace
+from robokin.workspace.size_cells import cells_of
 from robokin.workspace.space import Space, space_of
-from robokin.workspace.stages import about, stage
+from robokin.workspace.workspace_result import Workspace
 
 PLOTS = (".png", ".svg", ".pdf", ".html")
 
@@ -151,9 +151,9 @@ def require_drawable(plot: str) -> None:
     ending = Path(plot).suffix.lower()
     if ending not in PLOTS:
         raise InputError(f"--plot: found '{plot}', expected a name that ends with {or_list(PLOTS)}")
-    Place(plot, "--plot")
+    Destination(plot, "--plot")
     if ending != ".html":
-        from robokin.pictures.stills import require_matplotlib
+        from robokin.pictures.workspace_stills import require_matplotlib
 
         require_matplotlib(ending)
 
@@ -173,11 +173,11 @@ def _draw(
     else:
         picture = comparison(found, views, units, cores)
     if page_wanted:
-        from robokin.pictures.page import page
+        from robokin.pictures.workspace_page import page
 
         data = page(picture)
     else:
-        from robokin.pictures.stills import still
+        from robokin.pictures.workspace_stills import still
 
         data = still(picture, ending[1:])
     with sink(plot, "--plot") as stream:

@@ -13,8 +13,9 @@ from robokin.cli.output.numbers import counted, show
 from robokin.cli.output.tables import WIDTH, heading, pairs, render, table
 from robokin.cli.workspaces import GROUPS, WORDS, Cut, holds_at_a_point, known, ranges_of
 from robokin.units import Units
-from robokin.workspace.place import Place
-from robokin.workspace.result import Dexterity, Measure, Workspace
+from robokin.workspace.place import WorkspacePlace
+from robokin.workspace.sizes import Measure
+from robokin.workspace.workspace_result import Dexterity, Workspace
 
 POWERS = {1: "", 2: "²", 3: "³"}
 
@@ -155,7 +156,7 @@ def length_text(value: float, units: Units) -> str:
     return f"{0.0:.{DECIMALS[units.length]}f}" if float(text) == 0.0 else text
 
 
-def places_table(places: Sequence[Place], name: str, units: Units) -> bytes:
+def places_table(places: Sequence[WorkspacePlace], name: str, units: Units) -> bytes:
     """A row for each place that was asked about."""
     drawn = table()
     for column in ("x", "y", "z"):
@@ -172,12 +173,12 @@ def places_table(places: Sequence[Place], name: str, units: Units) -> bytes:
     return render(heading(name, rest), "", drawn, *notes)
 
 
-def solutions_text(place: Place) -> str:
+def solutions_text(place: WorkspacePlace) -> str:
     """How many configurations there are."""
     return "infinitely many" if place.solutions is None else str(place.solutions)
 
 
-def orientations_text(place: Place, units: Units) -> str:
+def orientations_text(place: WorkspacePlace, units: Units) -> str:
     """Which orientations a place can be reached with, in short."""
     reached = len(place.rotations)
     if not place.reachable:
@@ -197,7 +198,7 @@ def orientations_text(place: Place, units: Units) -> str:
     return text
 
 
-def ranges_text(place: Place, units: Units) -> str:
+def ranges_text(place: WorkspacePlace, units: Units) -> str:
     """The angles of the tool that can be reached, in words."""
     angles, words = ranges_of(place)
     if not angles:

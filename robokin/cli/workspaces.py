@@ -7,17 +7,16 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.cli.arguments import joint_factors
 from robokin.pictures.outline import Outline
 from robokin.records.envelope import envelope
 from robokin.spatial import quaternion_from_rotation
 from robokin.units import Units
-from robokin.workspace.place import Place
-from robokin.workspace.result import Dexterity, Measure, Workspace
-
-Array = NDArray[np.float64]
+from robokin.workspace.place import WorkspacePlace
+from robokin.workspace.sizes import Measure
+from robokin.workspace.workspace_result import Dexterity, Workspace
 
 SETS = {
     "reachable": "some orientation",
@@ -152,7 +151,7 @@ def cut_record(cut: Cut, units: Units) -> dict[str, Any]:
     }
 
 
-def place_record(place: Place, robot: str, units: Units) -> dict[str, Any]:
+def place_record(place: WorkspacePlace, robot: str, units: Units) -> dict[str, Any]:
     """Whether a place is reachable, and with which orientations."""
     reached = len(place.rotations)
     record: dict[str, Any] = {
@@ -186,7 +185,7 @@ class Ranges(NamedTuple):
     words: str
 
 
-def ranges_of(place: Place) -> Ranges:
+def ranges_of(place: WorkspacePlace) -> Ranges:
     """Which way the tool's x axis (or y, where that stands still) can point, about an axis of the world."""
     for i in (0, 1):
         pointing = place.rotations[:, :, i]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robokin.grading.freedom import across
+from robokin.grading.chain_freedom import across
 from robokin.grading.gaps import Gap, angle_between, feet
 from robokin.grading.same_robot import Match, Skeleton
 from robokin.grading.tolerance import Tolerance

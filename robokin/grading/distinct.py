@@ -5,12 +5,10 @@ from __future__ import annotations
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.grading.tolerance import Tolerance
 from robokin.model import Robot
-
-Array = NDArray[np.float64]
 
 SHADOWS = 3
 """Dimensions of the space of cells in which neighbours are looked for: enough to tell configurations apart, and a

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.grading.freedom import Axis, Near, across, shortest_turn, turn_about
+from robokin.arrays import Array
+from robokin.grading.chain_freedom import Axis, Near, across, shortest_turn, turn_about
 from robokin.grading.tolerance import Tolerance
 from robokin.spatial import transform
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,21 +7,20 @@ from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from robokin.arrays import Array
 from robokin.brief import Brief
 from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_finite, expect_flag, expect_kind
-from robokin.grading.configurations import Reached, SetMark, mark_set, reached
-from robokin.grading.poses import PASS, pose_errors, pose_status
+from robokin.grading.configuration_marks import Reached, SetMark, mark_set, reached
+from robokin.grading.pose_difference import PASS, pose_errors, pose_status
 from robokin.grading.same_robot import OPEN, Comparison, compare_tables
 from robokin.grading.tolerance import Tolerance, default_tolerance
 from robokin.inverse.analysis import Task
 from robokin.inverse.solve import TASKS, target_poses
 from robokin.kinematics.forward import forward_kinematics
 from robokin.model import Robot, expect_robot
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

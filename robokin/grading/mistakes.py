@@ -13,14 +13,12 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.grading.tolerance import Tolerance
 from robokin.model import Joint, Robot
 from robokin.spatial import invert
 from robokin.units import METRES, Units
-
-Array = NDArray[np.float64]
 
 LENGTH_UNIT, ANGLE_UNIT, BOTH_UNITS = "length unit", "angle unit", "length and angle unit"
 CONVENTION, ZERO, SIGN, TOOL, BASE = "convention", "zero", "sign", "tool", "base"

@@ -22,18 +22,16 @@ from functools import cached_property
 from itertools import chain, combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.brief import Brief
-from robokin.grading.freedom import EVERYTHING, NOTHING, Axis, Freedom, Near, across
+from robokin.grading.chain_freedom import EVERYTHING, NOTHING, Axis, ChainFreedom, Near, across
 from robokin.grading.gaps import Gap, gap_of
-from robokin.grading.poses import pose_errors
+from robokin.grading.pose_difference import pose_errors
 from robokin.grading.tolerance import Tolerance
 from robokin.kinematics.forward import joint_frames
 from robokin.model import Robot
 from robokin.spatial import invert, quaternion_from_rotation
-
-Array = NDArray[np.float64]
 
 OPEN = ("base", "tool", "zero", "sign")
 """What may be left open."""
@@ -75,12 +73,12 @@ def skeleton_of(robot: Robot) -> Skeleton:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class State(Brief):
+class MatchState(Brief):
     """How b has been moved: a motion (4, 4) for each joint so far, its senses, and what is still free."""
 
     motions: tuple[Array, ...]
     signs: tuple[int, ...]
-    freedom: Freedom
+    freedom: ChainFreedom
     worst: float = 0.0
 
 
@@ -93,7 +91,7 @@ class Match(Brief):
 
     joint: int | None
     gap: Gap | None
-    state: State
+    state: MatchState
     right: Skeleton
     given: Skeleton
 
@@ -142,7 +140,7 @@ def near_zero(allowed: Tolerance) -> Near:
 def match(right: Skeleton, given: Skeleton, allowed: Tolerance, free: frozenset[str]) -> Match:
     """Bring a given skeleton to the right one as far as it goes; both have joints of the same types."""
     near = near_zero(allowed)
-    states = [State((), (), EVERYTHING if "base" in free else NOTHING)]
+    states = [MatchState((), (), EVERYTHING if "base" in free else NOTHING)]
     for i, (a, b) in enumerate(zip(right.axes, given.axes, strict=True)):
         before = right.axes[i - 1] if i else None
         tried = [
@@ -163,8 +161,8 @@ def match(right: Skeleton, given: Skeleton, allowed: Tolerance, free: frozenset[
 
 
 def _joined(
-    state: State, a: Axis, b: Axis, before: Axis | None, sign: int, allowed: Tolerance, zero: bool
-) -> tuple[State, Gap]:
+    state: MatchState, a: Axis, b: Axis, before: Axis | None, sign: int, allowed: Tolerance, zero: bool
+) -> tuple[MatchState, Gap]:
     """The state after one joint more, and how far its axis is off."""
     near = near_zero(allowed)
     W = state.motions[-1] if state.motions else np.eye(4)
@@ -174,24 +172,24 @@ def _joined(
     left = left.moving(a, near) if zero else left
     worst = max(state.worst, gap.worst(allowed)[1])
     # What is allowed is taken back: an angle that is off a little must not count again as a length farther out.
-    return State((*state.motions, back @ W), (*state.signs, sign), left, worst), gap
+    return MatchState((*state.motions, back @ W), (*state.signs, sign), left, worst), gap
 
 
-def _ended(state: State, right: Skeleton, given: Skeleton) -> tuple[State, Gap]:
+def _ended(state: MatchState, right: Skeleton, given: Skeleton) -> tuple[MatchState, Gap]:
     """The state with the tool brought as near as it goes, and how far it is off."""
     W = state.motions[-1] if state.motions else np.eye(4)
     W = state.freedom.fit_frame(right.tool, W @ given.tool) @ W
     position, angle = pose_errors(right.tool, W @ given.tool)
     if right.axes and right.axes[-1].turning:
         # The last joint's angle is no length of the tool.
-        about = Freedom(np.empty((3, 0)), "line", right.axes[-1]).fit_frame(right.tool, W @ given.tool)
+        about = ChainFreedom(np.empty((3, 0)), "line", right.axes[-1]).fit_frame(right.tool, W @ given.tool)
         position = min(position, pose_errors(right.tool, about @ W @ given.tool)[0])
-    return State((*state.motions, W), state.signs, state.freedom, state.worst), Gap(angle, 0.0, position, 0.0)
+    return MatchState((*state.motions, W), state.signs, state.freedom, state.worst), Gap(angle, 0.0, position, 0.0)
 
 
-def _different(states: list[State], near: Near) -> list[State]:
+def _different(states: list[MatchState], near: Near) -> list[MatchState]:
     """One of the states that differ only by what is free."""
-    kept: list[State] = []
+    kept: list[MatchState] = []
     for state in states:
         k = invert(state.motions[-1])
         if not any(state.freedom.holds(other.motions[-1] @ k, near) for other in kept):

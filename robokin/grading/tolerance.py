@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from robokin.errors import InputError
 from robokin.expected import expect_flag, expect_number
-from robokin.kinematics.chain import chain_of, chain_size
+from robokin.kernel.chain import chain_of, chain_size
 from robokin.model import Robot, expect_robot
 
 ANSWER_PART = 1e-3

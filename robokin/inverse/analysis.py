@@ -23,21 +23,20 @@ from typing import Any, Literal
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.inverse.elimination import choose_splits, elimination_of, generic_count, trial_poses
-from robokin.inverse.loop import Loop, loop_of
-from robokin.inverse.newton import closing_at
-from robokin.inverse.padding import Padded, joint_frames_of, padded_chains
-from robokin.inverse.parallel import ThreeParallel
-from robokin.inverse.pose_error import error_and_jacobian
-from robokin.inverse.spherical import SphericalTriple
-from robokin.inverse.three_prismatic import ThreePrismatic
-from robokin.kinematics.chain import Chain, chain_of, chain_size, exact, z_to
+from robokin.arrays import Array, Index
+from robokin.inverse.closed_form.spherical_wrist import SphericalTriple
+from robokin.inverse.closed_form.three_parallel_axes import ThreeParallel
+from robokin.inverse.closed_form.three_prismatic import ThreePrismatic
+from robokin.inverse.elimination.loop import Loop, loop_of
+from robokin.inverse.elimination.loop_newton import closing_at
+from robokin.inverse.elimination.padding import Padded, joint_frames_of, padded_chains
+from robokin.inverse.elimination.splits import choose_splits, elimination_of, generic_count, trial_poses
+from robokin.inverse.numeric.pose_error import error_and_jacobian
+from robokin.kernel.chain import Chain, chain_of, chain_size, exact, z_to
 from robokin.model import Robot
 from robokin.spatial import rotation_from_axis_angle, transform
 
-Array = NDArray[np.float64]
 Task = Literal["pose", "approach", "position"]
 
 CLOSED_FORMS = (SphericalTriple, ThreePrismatic, ThreeParallel)
@@ -95,7 +94,7 @@ class Analysis:
         return window_chain(self.solved, self.window)
 
     @property
-    def moving(self) -> NDArray[np.intp]:
+    def moving(self) -> Index:
         """The arm's joints, from 0, that are not idle."""
         return np.array([i for i in range(self.chain.n - self.open) if i not in self.idle], dtype=np.intp)
 

@@ -15,7 +15,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from robokin.inverse.members import Motion
+from robokin.arrays import Index
+from robokin.inverse.self_motion.members import SelfMotion
 from robokin.inverse.verify import Found, merged
 
 NOTHING, COUNTED, ACCOUNTED = 0, 1, 2
@@ -44,13 +45,13 @@ class Claims:
 
     basis: NDArray[np.int8]
     N: int | None
-    real: NDArray[np.intp]
+    real: Index
     words: dict[int, str] = field(default_factory=dict)
-    motions: dict[int, list[Motion]] = field(default_factory=dict)
+    motions: dict[int, list[SelfMotion]] = field(default_factory=dict)
     branches: bool = False
     otherwise: str = SEARCHED
-    candidates: NDArray[np.intp] | None = None
-    duplicates: NDArray[np.intp] | None = None
+    candidates: Index | None = None
+    duplicates: Index | None = None
 
     def sentence(self, i: int) -> str:
         """What the completeness of target i rests on, or why there is none."""
@@ -68,7 +69,7 @@ def unclaimed(m: int, otherwise: str = SEARCHED) -> Claims:
     return Claims(np.zeros(m, dtype=np.int8), None, np.zeros(m, dtype=np.intp), otherwise=otherwise)
 
 
-def replaced(found: Found, claims: Claims, again: NDArray[np.intp], more: Found, said: Claims) -> tuple[Found, Claims]:
+def replaced(found: Found, claims: Claims, again: Index, more: Found, said: Claims) -> tuple[Found, Claims]:
     """The solutions and claims with those of the targets `again` (k,) replaced."""
     kept = np.ones(len(claims.basis), dtype=bool)
     kept[again] = False

@@ -7,19 +7,17 @@ from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Index
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.nearest_member import nearest_on
-from robokin.inverse.numeric import descend
-from robokin.inverse.pose_error import pose_error
-from robokin.inverse.solution_sets import families
+from robokin.inverse.numeric.least_squares import descend
+from robokin.inverse.numeric.pose_error import pose_error
+from robokin.inverse.self_motion.nearest_member import nearest_on
+from robokin.inverse.self_motion.solution_sets import families
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import CLOSES
-from robokin.kinematics.chain import Chain
+from robokin.kernel.chain import Chain
 from robokin.model import Robot
-
-Array = NDArray[np.float64]
 
 NEAR = 0.1
 """A step that moves no joint by more [rad | size] is no jump: different solutions are farther apart but near a
@@ -56,7 +54,7 @@ class Follower:
         self.analysis = analysis_of(robot, task)
         self.scale = np.where(robot.revolute, 1.0, self.analysis.size)
         self.numeric = bool(self.analysis.redundancy or self.analysis.idle) or self.analysis.solver is None
-        self.block: tuple[int, Array, NDArray[np.intp]] | None = None
+        self.block: tuple[int, Array, Index] | None = None
         self.poses = at(s)
         self.ahead = np.zeros(robot.n)
 

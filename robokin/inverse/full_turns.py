@@ -16,18 +16,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags, Index
 from robokin.errors import InputError
 from robokin.inverse.analysis import Task
-from robokin.inverse.result import BatchResult, Result
+from robokin.inverse.solutions import BatchResult, Result
 from robokin.inverse.verify import residuals
 from robokin.kinematics.forward import forward_kinematics
 from robokin.model import Robot
 from robokin.model.robot import LIMIT_TOLERANCE
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 TURN = 2.0 * math.pi
 
 MOST_TURNS = 10_000
@@ -84,7 +82,7 @@ def count_equivalents(robot: Robot, q: Array) -> list[int]:
     return [math.prod(int(count) for count in row) for row in (most - least + 1.0).tolist()]
 
 
-def equivalents(robot: Robot, q: Array) -> tuple[Array, Index, NDArray[np.bool_]]:
+def equivalents(robot: Robot, q: Array) -> tuple[Array, Index, Flags]:
     """All equivalents within the limits of configurations q: (s, n) [rad | m].
 
     Returns them (r, n), those of one after the other by q1, q2, …; of which row of q each is (r,); whether it is that
@@ -122,7 +120,7 @@ class Turned:
 
     index: Index
     of: Index
-    own: NDArray[np.bool_]
+    own: Flags
     q: Array
     position: Array
     angle: Array

@@ -18,18 +18,16 @@ from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Index
 from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.branches import branch_names
-from robokin.inverse.result import Arc, BatchResult, Family, Result, Solution
-from robokin.kinematics.chain import row_constants
+from robokin.inverse.solution_names import branch_names
+from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution
+from robokin.kernel.chain import row_constants
 from robokin.model import Joint, JointType, Robot
 from robokin.model.robot import LIMIT_TOLERANCE
 from robokin.spatial import rotation_transform
-
-Array = NDArray[np.float64]
 
 KEPT = 16
 """Arms with joints held that are kept for one robot: enough for a few values in turn; a sweep over many values must
@@ -47,11 +45,11 @@ class HeldArm:
     """
 
     n: int
-    joints: NDArray[np.intp]
+    joints: Index
     values: Array
     inside: bool
     part: Robot
-    free: NDArray[np.intp]
+    free: Index
 
     def own(self, q: Array) -> Array:
         """Those of joint values (..., n) that are not held, (..., n - h)."""

@@ -6,12 +6,10 @@ Nothing here depends on where on its axis a joint's frame stands.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.inverse.padding import joint_frames_of
-from robokin.kinematics.chain import Chain
-
-Array = NDArray[np.float64]
+from robokin.arrays import Array
+from robokin.inverse.elimination.padding import joint_frames_of
+from robokin.kernel.chain import Chain
 
 NEARLY = 0.01
 """Sine of an angle, or a distance in the arm's size, below which axes count as parallel or as meeting: calibration

@@ -9,11 +9,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.inverse.joint_axes import Axes, dot
 
-Array = NDArray[np.float64]
 Quantity = Callable[[Axes], Array]
 Point = Callable[[Axes], Array]
 
@@ -38,7 +37,7 @@ class Sign:
         """The part and its side."""
         return f"{self.part} {self.yes if holds else self.no}"
 
-    def holds(self, axes: Axes) -> NDArray[np.bool_]:
+    def holds(self, axes: Axes) -> Flags:
         """(s,) where the first word is right."""
         return np.asarray(self.quantity(axes) >= -UNDECIDED)
 

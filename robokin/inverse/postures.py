@@ -40,8 +40,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.inverse.joint_axes import NEARLY, Axes, dot
 from robokin.inverse.posture_signs import (
     UNDECIDED,
@@ -57,9 +57,7 @@ from robokin.inverse.posture_signs import (
     triple_product,
     turn_of,
 )
-from robokin.kinematics.chain import Chain, chain_size
-
-Array = NDArray[np.float64]
+from robokin.kernel.chain import Chain, chain_size
 
 UPRIGHT = 0.05
 """A reach in the arm's size that is none: the arm stands upright. Calibration moves it by less than a hundredth."""

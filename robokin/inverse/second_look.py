@@ -19,28 +19,24 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis, General
 from robokin.inverse.claims import ACCOUNTED, COUNTED, NOTHING, Claims
-from robokin.inverse.complex_newton import regular
-from robokin.inverse.elimination import REAL, count_solutions
-from robokin.inverse.homotopy import Homotopy
-from robokin.inverse.loop import Candidates, ComplexCandidates, Loop
-from robokin.inverse.monodromy import Known
-from robokin.inverse.more_motions import listed_with_more
-from robokin.inverse.neighbours import NEARLY, STEPS, half_turns, next_door, other_ways
-from robokin.inverse.newton import closing_at, refine
-from robokin.inverse.numeric import descend
-from robokin.inverse.pose_error import error_and_jacobian
-from robokin.inverse.skew import Skew
-from robokin.inverse.starts_close_by import CloseBy
+from robokin.inverse.elimination.complex_newton import regular
+from robokin.inverse.elimination.homotopy import Homotopy
+from robokin.inverse.elimination.loop import Candidates, ComplexCandidates, Loop
+from robokin.inverse.elimination.loop_newton import closing_at, refine
+from robokin.inverse.elimination.monodromy import Known
+from robokin.inverse.elimination.neighbours import NEARLY, STEPS, half_turns, next_door, other_ways
+from robokin.inverse.elimination.skew import Skew
+from robokin.inverse.elimination.splits import REAL, count_solutions
+from robokin.inverse.elimination.starts_close_by import CloseBy
+from robokin.inverse.numeric.least_squares import descend
+from robokin.inverse.numeric.pose_error import error_and_jacobian
+from robokin.inverse.self_motion.more_motions import listed_with_more
 from robokin.inverse.verify import CLOSES, Found, distinct, merged
-from robokin.kinematics.chain import Chain
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Flags = NDArray[np.bool_]
+from robokin.kernel.chain import Chain
 
 FINE = 6
 """Steps by singular values thereafter: next to singular poses normal equations lose half of the digits."""
@@ -197,7 +193,7 @@ def few_solutions(analysis: Analysis, T: Array) -> Flags:
 
 def followed(
     other: _Others, T: Array, few: Flags, own: int
-) -> tuple[tuple[Index, Array], Flags, dict[int, str], NDArray[np.intp], Flags]:
+) -> tuple[tuple[Index, Array], Flags, dict[int, str], Index, Flags]:
     """Configurations (s, 6) [rad | m] in which a homotopy's paths end; for which targets all ended; in words.
 
     Also how many (m,) of them there are at which the joints after the first `own` stand still, -1 where it is not

@@ -5,20 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.inverse.arcs import arcs_of_each
-from robokin.inverse.branches import branch_names
+from robokin.arrays import Array
 from robokin.inverse.claims import BASES
-from robokin.inverse.curve_crossings import crossings
-from robokin.inverse.redundant import NOT_FOUND, seeds_of
-from robokin.inverse.result import Arc, Family, Result, Solution
-from robokin.inverse.solution_sets import families
+from robokin.inverse.self_motion.arcs import arcs_of_each
+from robokin.inverse.self_motion.curve_crossings import crossings
+from robokin.inverse.self_motion.redundant import NOT_FOUND, seeds_of
+from robokin.inverse.self_motion.solution_sets import families
+from robokin.inverse.solution_names import branch_names
+from robokin.inverse.solutions import Arc, Family, Result, Solution
 from robokin.inverse.target_block import Request, TargetBlock, stands_for
 from robokin.inverse.verify import within_limits, wrapped
 from robokin.kinematics.forward import forward_kinematics
-
-Array = NDArray[np.float64]
 
 REACHED = 1e-8
 """A nearest configuration whose position is off by less, in the arm's size, lacks only the orientation."""

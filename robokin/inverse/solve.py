@@ -6,23 +6,23 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_flag, expect_kind, expect_numbers, expect_whole
 from robokin.inverse.analysis import Task, analysis_of
-from robokin.inverse.blocks import BLOCK
 from robokin.inverse.full_turns import check_turns, with_full_turns, with_turn_counts
 from robokin.inverse.hold import check_held_limits, held_arm, own_near, with_held_joints
-from robokin.inverse.result import BatchResult, Question, Result
 from robokin.inverse.single_answer import FAR, result_of
+from robokin.inverse.solutions import BatchResult, Question, Result
+from robokin.inverse.solve_blocks import BLOCK
 from robokin.inverse.target_block import Method, Request, TargetBlock
 from robokin.model import Robot, expect_robot
 from robokin.spatial import nearest_rotation, rotation_error, transform
 from robokin.spatial.rotations import DIGITS_LOST
 from robokin.spatial.transforms import FARTHEST
 
-Array = NDArray[np.float64]
 METHODS = ("auto", "analytic", "numeric")
 TASKS = ("pose", "approach", "position")
 

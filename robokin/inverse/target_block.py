@@ -8,29 +8,28 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis
-from robokin.inverse.arcs import arcs_of_each
-from robokin.inverse.blocks import solve_block, turned_in_the_open
-from robokin.inverse.branches import branch_names, listed_names
 from robokin.inverse.claims import unclaimed
-from robokin.inverse.closest import TOGETHER, beyond_reach, nearest_configurations
-from robokin.inverse.closing import closing_nearest
-from robokin.inverse.members import Motion, listed_once
-from robokin.inverse.nearest import free_at, numeric_solutions
-from robokin.inverse.numeric import descend
-from robokin.inverse.onto_limits import onto_limits
-from robokin.inverse.pose_error import error_and_jacobian
-from robokin.inverse.redundant import MOST_SOUGHT, UNPROVEN, supplemented
-from robokin.inverse.result import Arc
-from robokin.inverse.spread import well_spread
+from robokin.inverse.numeric.closest import TOGETHER, beyond_reach, nearest_configurations
+from robokin.inverse.numeric.closing import closing_nearest
+from robokin.inverse.numeric.least_squares import descend
+from robokin.inverse.numeric.nearest import free_at, numeric_solutions
+from robokin.inverse.numeric.pose_error import error_and_jacobian
+from robokin.inverse.self_motion.arcs import arcs_of_each
+from robokin.inverse.self_motion.members import SelfMotion, listed_once
+from robokin.inverse.self_motion.onto_limits import onto_limits
+from robokin.inverse.self_motion.redundant import MOST_SOUGHT, UNPROVEN, supplemented
+from robokin.inverse.self_motion.spread import well_spread
+from robokin.inverse.solution_names import branch_names, listed_names
+from robokin.inverse.solutions import Arc
+from robokin.inverse.solve_blocks import solve_block, turned_in_the_open
 from robokin.inverse.verify import CLOSES, Found, distinct, merged, nothing, with_ones_within, within_limits, wrapped
 from robokin.model import Robot
 from robokin.model.robot import tolerated
 from robokin.spatial.transforms import FARTHEST
 
-Array = NDArray[np.float64]
 Method = Literal["auto", "analytic", "numeric"]
 
 TYPED = 1e-3
@@ -100,7 +99,7 @@ class TargetBlock:
             found, moved = onto_limits(analysis, T, found, inside, request.own_limits)
             if moved.any():
                 found, inside = _limited(request, distinct(found, robot.revolute, analysis.size))
-        later: NDArray[np.intp] | None = None
+        later: Index | None = None
         if request.method != "numeric" and analysis.solver is not None and analysis.redundancy:
             wanted = MOST if request.most is None or request.most > MOST_SOUGHT else request.most
             search = ~self.beyond if request.method == "auto" else np.zeros(len(T), dtype=bool)
@@ -140,7 +139,7 @@ class TargetBlock:
         self.count = self.within if whole else np.bincount(self.found.index, minlength=len(T))
         self.cut = self.within > self.count
 
-    def _each_once(self, targets: NDArray[np.intp], more: Found) -> Found:
+    def _each_once(self, targets: Index, more: Found) -> Found:
         """What a search found for some targets (k,), by these, with each multiple root and each self-motion once."""
         request, analysis = self.request, self.request.analysis
         moving, motions = analysis.moving, self.claims.motions
@@ -204,7 +203,7 @@ class TargetBlock:
         return turned_in_the_open(self.request.analysis, self.T)
 
     @cached_property
-    def beyond(self) -> NDArray[np.bool_]:
+    def beyond(self) -> Flags:
         """Which targets are farther off than the arm is long."""
         return beyond_reach(self.request.analysis, self.T, self.request.own_limits)
 
@@ -254,13 +253,13 @@ def _beside(request: Request, T: Array, near: Array) -> Found:
     return Found(index, q, position * analysis.size, angle).pick(closes)
 
 
-def _with_more(found: Found, more: Found, missing: NDArray[np.intp]) -> Found:
+def _with_more(found: Found, more: Found, missing: Index) -> Found:
     """All configurations, sorted by target; more's targets are numbered as in `missing`."""
     both = merged(found, Found(missing[more.index], more.q, more.position, more.angle))
     return both.pick(np.argsort(both.index, kind="stable"))
 
 
-def _limited(request: Request, found: Found) -> tuple[Found, NDArray[np.bool_]]:
+def _limited(request: Request, found: Found) -> tuple[Found, Flags]:
     """Angles turned into the limits, and which configurations are within them.
 
     Where limits do not count, an angle whose wish is outside them is turned next to the wish.
@@ -277,9 +276,7 @@ def _limited(request: Request, found: Found) -> tuple[Found, NDArray[np.bool_]]:
     return Found(found.index, q, found.position, found.angle), inside
 
 
-def _ordered(
-    request: Request, found: Found, inside: NDArray[np.bool_], later: NDArray[np.intp] | None
-) -> tuple[Found, NDArray[np.bool_]]:
+def _ordered(request: Request, found: Found, inside: Flags, later: Index | None) -> tuple[Found, Flags]:
     """By target, then by the move from `near` if there is one, and cut to the number asked for.
 
     Of infinitely many some well spread ones; without `near` each is the farthest from those before it. later: (s,)
@@ -308,7 +305,7 @@ def _ordered(
     return found.pick(keep), inside[keep]
 
 
-def stands_for(robot: Robot, analysis: Analysis, q: Array, motion: Motion) -> int:
+def stands_for(robot: Robot, analysis: Analysis, q: Array, motion: SelfMotion) -> int:
     """Which of solutions q: (k, n) stands for a self-motion; -1 for none, as where the list was cut."""
     moving = analysis.moving
     if not len(moving) or not len(q):

@@ -9,16 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.inverse.loop import Candidates, Loop
-from robokin.inverse.newton import refine
-from robokin.kinematics.chain import Chain
-from robokin.kinematics.columns import BLOCK, Constant, Plan
+from robokin.arrays import Array, Flags, Index
+from robokin.inverse.elimination.loop import Candidates, Loop
+from robokin.inverse.elimination.loop_newton import refine
+from robokin.kernel.chain import Chain
+from robokin.kernel.columns import BLOCK, ChainPlan, Constant
 from robokin.model.robot import tolerated
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 CLOSES = 1e-9
 """A solution's greatest residual, in the arm's size and in radians: what is listed closes to this."""
@@ -64,7 +61,7 @@ class Found:
         """How many configurations."""
         return len(self.index)
 
-    def pick(self, which: Index | NDArray[np.bool_]) -> Found:
+    def pick(self, which: Index | Flags) -> Found:
         """Some of them."""
         if which.dtype == np.bool_:
             if which.all():
@@ -89,12 +86,12 @@ def merged(a: Found, b: Found) -> Found:
     )
 
 
-class Poses:
+class TargetPoses:
     """Forward kinematics of a chain (base, joints, virtual joints, tool) against a block of targets."""
 
     def __init__(self, chain: Chain, T: Array) -> None:
         segments = [[Constant(C, mark=i == chain.n)] for i, C in enumerate(chain.constants)]
-        self.plan = Plan(segments, chain.revolute, chain.offsets)
+        self.plan = ChainPlan(segments, chain.revolute, chain.offsets)
         # The twelve entries of each target, column by column, as the plan gives them.
         self.targets = np.ascontiguousarray(T[:, :3].transpose(2, 1, 0)).reshape(12, -1)
 
@@ -132,7 +129,7 @@ def residuals(T: Array, found: Array) -> tuple[Array, Array]:
 
 
 def verified(
-    loop: Loop, chain: Chain, poses: Poses, closing: Array, candidates: Candidates, enough: float = EXACT_ENOUGH
+    loop: Loop, chain: Chain, poses: TargetPoses, closing: Array, candidates: Candidates, enough: float = EXACT_ENOUGH
 ) -> Found:
     """The candidates that close, after a polish of those that close only nearly.
 
@@ -162,7 +159,7 @@ def closing_distances(chain: Chain, q: Array, size: float) -> Array:
     return np.asarray(CLOSES * size + ROUNDING * np.sum(slid, axis=0))
 
 
-def wrapped(q: Array, revolute: NDArray[np.bool_]) -> Array:
+def wrapped(q: Array, revolute: Flags) -> Array:
     """Joint values (s, n) with every angle in [-π, π]."""
     turns = np.round(q.T * np.where(revolute, 0.5 / np.pi, 0.0)[:, None])
     turns *= -2.0 * np.pi
@@ -170,7 +167,7 @@ def wrapped(q: Array, revolute: NDArray[np.bool_]) -> Array:
     return turns.T
 
 
-def distinct(found: Found, revolute: NDArray[np.bool_], size: float) -> Found:
+def distinct(found: Found, revolute: Flags, size: float) -> Found:
     """One configuration of each set of equal ones, angles in [-π, π], by target and then by q1, q2, … .
 
     Of equal ones that with the least residual stays. The order is by q1 to q4 as rounded to a few
@@ -179,7 +176,7 @@ def distinct(found: Found, revolute: NDArray[np.bool_], size: float) -> Found:
     return distinct_and_close(found, revolute, size)[0]
 
 
-def distinct_and_close(found: Found, revolute: NDArray[np.bool_], size: float) -> tuple[Found, Index, Index]:
+def distinct_and_close(found: Found, revolute: Flags, size: float) -> tuple[Found, Index, Index]:
     """`distinct`; the targets (k,) of which some were equal; those of which some may be nearer than CLOSE together.
 
     Where solutions meet the arm is singular, so that nearness is a cheap hint of it.
@@ -243,7 +240,7 @@ KEY_CELLS = (2.0**14, 2.0**13, 2.0**13, 2.0**13)
 """Parts that the ranges of q1 … q4 are cut into for the order; their product is a whole number below 2⁵³."""
 
 
-def _first_of_equals(found: Found, revolute: NDArray[np.bool_], size: float) -> NDArray[np.bool_]:
+def _first_of_equals(found: Found, revolute: Flags, size: float) -> Flags:
     """(s,) which configurations equal none with a lesser residual, found being sorted by target."""
     order = np.lexsort((found.position / size + found.angle, found.index))
     first = np.flatnonzero(np.diff(found.index[order], prepend=-1))
@@ -263,9 +260,7 @@ def _first_of_equals(found: Found, revolute: NDArray[np.bool_], size: float) -> 
     return keep
 
 
-def within_limits(
-    q: Array, revolute: NDArray[np.bool_], limits: Array, near: Array | None
-) -> tuple[Array, NDArray[np.bool_]]:
+def within_limits(q: Array, revolute: Flags, limits: Array, near: Array | None) -> tuple[Array, Flags]:
     """Joint values (s, n), angles in [-π, π], with each turned by ±360° into its limits; whether all are within.
 
     Among the turns that are within the limits the one nearest to `near` (n,), or to zero, is taken;
@@ -297,9 +292,7 @@ def within_limits(
     return q, inside
 
 
-def with_ones_within(
-    listed: Found, found: Found, revolute: NDArray[np.bool_], limits: Array, size: float
-) -> tuple[Found, Index]:
+def with_ones_within(listed: Found, found: Found, revolute: Flags, limits: Array, size: float) -> tuple[Found, Index]:
     """What is listed, by target, and of each target with none within limits (n, 2) the most exact one found that is.
 
     Of roots that joint values hardly tell apart one outside the limits may stand for one within. Also the targets (k,)

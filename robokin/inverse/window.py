@@ -12,21 +12,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis, General
-from robokin.inverse.complex_newton import complex_refine, on_the_way_out, regular, regular_and_distinct
-from robokin.inverse.elimination import REAL
-from robokin.inverse.loop import ComplexCandidates
-from robokin.inverse.nearest import SINGULAR as ON_CURVE
-from robokin.inverse.newton import determinants
-from robokin.inverse.numeric import descend
-from robokin.inverse.pose_error import error_and_jacobian
-from robokin.inverse.verify import CLOSES, VIRTUAL, Found, Poses, closing_distances, distinct, verified
-from robokin.kinematics.chain import Chain
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from robokin.inverse.elimination.complex_newton import complex_refine, on_the_way_out, regular, regular_and_distinct
+from robokin.inverse.elimination.loop import ComplexCandidates
+from robokin.inverse.elimination.loop_newton import determinants
+from robokin.inverse.elimination.splits import REAL
+from robokin.inverse.numeric.least_squares import descend
+from robokin.inverse.numeric.nearest import SINGULAR as ON_CURVE
+from robokin.inverse.numeric.pose_error import error_and_jacobian
+from robokin.inverse.verify import CLOSES, VIRTUAL, Found, TargetPoses, closing_distances, distinct, verified
+from robokin.kernel.chain import Chain
 
 SINGULAR = 5e-6
 """Least singular value of the Jacobian (lengths in sizes) of a closed form's solution below which others may be lost:
@@ -57,8 +54,8 @@ class Doubt:
     candidates: (m,) how many were tried.
     """
 
-    certain: NDArray[np.bool_]
-    possible: NDArray[np.bool_]
+    certain: Flags
+    possible: Flags
     candidates: Index
 
 
@@ -68,7 +65,7 @@ def solve_window(analysis: Analysis, T: Array, count: bool = True) -> tuple[Foun
     assert six is not None
     assert loop is not None
     closing = loop.closing(T)
-    poses = Poses(six.chain, T)
+    poses = TargetPoses(six.chain, T)
     if isinstance(solver, General):
         candidates, imaginary = solver.first.all_candidates(closing, complex_too=count)
         found = distinct(verified(loop, six.chain, poses, closing, candidates, ROUNDED), six.chain.revolute, loop.size)
@@ -139,7 +136,7 @@ def _own_joints(analysis: Analysis, T: Array, found: Found) -> Found:
     return Found(found.index, q, position, angle).pick(closes)
 
 
-def _on_self_motions(analysis: Analysis, T: Array, found: Found, still: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _on_self_motions(analysis: Analysis, T: Array, found: Found, still: Flags) -> Flags:
     """(s,) which configurations are on self-motions of the six joints, for targets without any that stand `still`.
 
     Such a curve may lead to where the virtual joints stand still: its members are starts for the arm's own.
@@ -162,7 +159,7 @@ def least_singular_values(chain: Chain, q: Array, size: float) -> Array:
     return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
 
 
-def nearly_singular(chain: Chain, q: Array, size: float, below: Array) -> NDArray[np.bool_]:
+def nearly_singular(chain: Chain, q: Array, size: float, below: Array) -> Flags:
     """(s,) whether the least singular value of the Jacobian at q (s, n) [rad | m], lengths in sizes, is below (s,).
 
     The product of the other singular values is at most (|J|² / 5)^(5/2), so that for six joints the
@@ -177,7 +174,7 @@ def nearly_singular(chain: Chain, q: Array, size: float, below: Array) -> NDArra
     return near
 
 
-def beyond_chain(chain: Chain, T: Array, size: float) -> NDArray[np.bool_]:
+def beyond_chain(chain: Chain, T: Array, size: float) -> Flags:
     """Which targets T (m, 4, 4) [m] are farther off than a chain of turning joints, stretched out, is long."""
     if not chain.revolute.all():
         return np.zeros(len(T), dtype=bool)

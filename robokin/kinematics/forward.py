@@ -6,15 +6,14 @@ import math
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.expected import expect_numbers
-from robokin.kinematics.chain import chain_of, exact, row_constants
-from robokin.kinematics.columns import BLOCK, Constant, Plan
+from robokin.kernel.chain import chain_of, exact, row_constants
+from robokin.kernel.columns import BLOCK, ChainPlan, Constant
 from robokin.model import Robot, expect_robot
-
-Array = NDArray[np.float64]
 
 
 def forward_kinematics(robot: Robot, q: ArrayLike) -> Array:
@@ -75,16 +74,16 @@ def joint_values(robot: Robot, q: ArrayLike) -> Array:
     return q
 
 
-_plans: WeakKeyDictionary[Robot, dict[str, Plan]] = WeakKeyDictionary()
+_plans: WeakKeyDictionary[Robot, dict[str, ChainPlan]] = WeakKeyDictionary()
 
 
-def _plan(robot: Robot, which: str) -> Plan:
+def _plan(robot: Robot, which: str) -> ChainPlan:
     kept = _plans.setdefault(robot, {})
     if which not in kept:
         chain = chain_of(robot)
         segments = {"pose": _pose_segments, "joints": _joint_segments}.get(which)
         marked = segments(chain.constants) if segments else _row_segments(robot, which == "rows")
-        kept[which] = Plan(marked, chain.revolute, chain.offsets)
+        kept[which] = ChainPlan(marked, chain.revolute, chain.offsets)
     return kept[which]
 
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from robokin.arrays import Array
 from robokin.expected import expect_choice
 from robokin.kinematics.forward import joint_frames
 from robokin.model import Robot
-
-Array = NDArray[np.float64]
 
 
 def jacobian(robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base") -> Array:

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.brief import Brief
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.singular_equation import Equation, equation_of, exact_angle, lateral, reference_point
@@ -27,8 +27,6 @@ from robokin.kinematics.structure import structure_of
 from robokin.kinematics.velocity import Lost, MotionTask, TaskName, lost_directions, motion_task
 from robokin.model import Robot
 from robokin.model.robot import LIMIT_TOLERANCE
-
-Array = NDArray[np.float64]
 
 TRIES = 40
 """Values tried for the joints that do not matter, until an example has lost nothing else and respects the limits."""

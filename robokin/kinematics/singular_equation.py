@@ -12,20 +12,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.velocity import wrist_centre
 from robokin.model import Robot
-
-Array = NDArray[np.float64]
 
 NONE = 1e-9
 """Coefficients and misfits below this part of the arm's size are rounding."""
 
 
 @dataclass(frozen=True)
-class Term:
+class EquationTerm:
     """coefficient [m] times c, s or nothing of an angle, the sum of joints (from 1) with signs; letter: the table's."""
 
     coefficient: float
@@ -48,7 +46,7 @@ class Term:
 class Equation:
     """A sum of terms that must be zero."""
 
-    terms: tuple[Term, ...]
+    terms: tuple[EquationTerm, ...]
 
     def value(self, q: Array) -> Array:
         """(...) what the sum is [m] at q: (..., n) [rad | m]."""
@@ -153,7 +151,9 @@ def equation_of(robot: Robot, joints: tuple[int, ...], size: float) -> Equation 
     minus = [letter.startswith("-") if letter else term[0] < 0.0 for letter, term in zip(letters, terms, strict=True)]
     if 2 * sum(minus) > len(minus):
         terms = [(-value, letter, part) for value, letter, part in terms]
-    return Equation(tuple(Term(value, letter, part, _letter(robot, value, part)) for value, letter, part in terms))
+    return Equation(
+        tuple(EquationTerm(value, letter, part, _letter(robot, value, part)) for value, letter, part in terms)
+    )
 
 
 def _letter(robot: Robot, value: float, angles: tuple[int, ...]) -> str:

@@ -15,13 +15,11 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.kinematics.jacobian import jacobian
 from robokin.kinematics.velocity import MotionTask, scaled
 from robokin.model import Robot
-
-Array = NDArray[np.float64]
 
 GRID = 90
 """Values of a joint in a scan: four degrees apart. Factors of library arms are harmonics of the first degree."""
@@ -211,7 +209,7 @@ class Search:
         good = np.max(self.least(x), axis=1) <= HOLDS
         return np.where(good[:, None], near, values)
 
-    def beside(self, x: Array, found: Condition) -> NDArray[np.bool_]:
+    def beside(self, x: Array, found: Condition) -> Flags:
         """(s,) which x (s, n) fulfil a condition on values, or nearly."""
         joints = list(found.joints)
         gap = np.abs(x[:, None, joints] - found.values / self.scale[joints])
@@ -219,7 +217,7 @@ class Search:
         gap = np.where(self.robot.revolute[joints], turned, gap)
         return np.asarray(np.any(np.max(gap, axis=2) < BESIDE, axis=1))
 
-    def binding(self, x: Array) -> NDArray[np.bool_]:
+    def binding(self, x: Array) -> Flags:
         """(s, n) which joints a singular x (s, n) depends on: moved at random, they bring the rank back."""
         s, n = x.shape
         moved = np.broadcast_to(x[:, None, None], (s, n, DRAWS, n)).copy()
@@ -227,7 +225,7 @@ class Search:
         moved[:, k, :, k] = np.moveaxis(self.drawn(s, DRAWS), 2, 0)
         return np.asarray(np.max(self.least(moved), axis=2) > STAYS)
 
-    def holds(self, x: Array, joints: tuple[int, ...]) -> NDArray[np.bool_]:
+    def holds(self, x: Array, joints: tuple[int, ...]) -> Flags:
         """(s,) whether x (s, n) stay singular when all joints but these are moved at random together."""
         moved = np.repeat(x[:, None], DRAWS, axis=1)
         free = np.setdiff1d(np.arange(self.robot.n), joints)
@@ -273,7 +271,7 @@ def _golden(f: Callable[[Array], Array], low: Array, high: Array) -> Array:
     return np.asarray((a + b) / 2.0)
 
 
-def _distinct(rows: Array, turns: NDArray[np.bool_]) -> Array:
+def _distinct(rows: Array, turns: Flags) -> Array:
     """Rows (v, k) without those that equal an earlier one, in order; angles modulo a turn."""
     kept: list[Array] = []
     for row in rows[np.lexsort(np.round(rows, 6).T[::-1])]:

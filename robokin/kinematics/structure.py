@@ -10,14 +10,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.kinematics.chain import chain_of, chain_size
+from robokin.kernel.chain import chain_of, chain_size
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
 from robokin.model import Robot
-
-Array = NDArray[np.float64]
 
 SAME = 1e-6
 """Sines of angles, and distances as parts of the arm's size, below which axes are taken as parallel or

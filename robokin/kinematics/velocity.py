@@ -17,18 +17,18 @@ from typing import Literal, get_args
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from robokin.arrays import Array, Index
 from robokin.brief import Answer, Brief
 from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_finite
-from robokin.kinematics.chain import chain_of, chain_size
+from robokin.kernel.chain import chain_of, chain_size
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
 from robokin.kinematics.structure import structure_of
 from robokin.model import Robot, expect_robot
 
-Array = NDArray[np.float64]
 TaskName = Literal["pose", "position", "orientation"]
 
 SINGULAR = 1e-6
@@ -70,7 +70,7 @@ class Differential(Answer):
 
     task: MotionTask
     jacobian: Array
-    rank: NDArray[np.intp]
+    rank: Index
     singular_values: Array
     raw_singular_values: Array
     manipulability: Array

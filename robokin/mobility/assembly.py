@@ -5,19 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Index
 from robokin.errors import InputError
-from robokin.mobility.blocks import spread_of
-from robokin.mobility.couplings import contact_rows
-from robokin.mobility.gears import gear_rows
+from robokin.mobility.gear_equations import gear_rows
 from robokin.mobility.linkage import Linkage
+from robokin.mobility.linkage_blocks import spread_of
 from robokin.mobility.pins import pairs
+from robokin.mobility.rolling import contact_rows
 from robokin.mobility.screws import Element, elements_of, has_geometry
 from robokin.model import Mechanism, MechanismJoint
 from robokin.spatial import transform
-
-Array = NDArray[np.float64]
 
 CONTACTS = ("gear", "cam", "rolling", "belt")
 """Joints of wheels, or at a point that may wander on both links."""
@@ -39,7 +37,7 @@ class Assembly:
     linkage: Linkage
     size: float
     middle: Array
-    own: NDArray[np.intp]
+    own: Index
     tied: tuple[tuple[str, ...], ...] = ()
 
     @property

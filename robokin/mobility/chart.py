@@ -21,19 +21,16 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.mobility.screws import moved_screws
-
-Array = NDArray[np.float64]
-
 
 OUT_OF_PLANE = 1e-12
 """Parts of unit twists below this are rounding."""
 
 
 @dataclass(frozen=True, eq=False)
-class Edge:
+class ChartEdge:
     """A joint from body a to body b as a product of motions about its screws (n, 6) in order; none is fixed."""
 
     a: int
@@ -49,7 +46,7 @@ class Chart:
     default if nothing leaves it.
     """
 
-    def __init__(self, edges: list[Edge], rows: Array, roots: tuple[int, ...], planar: bool | None = None) -> None:
+    def __init__(self, edges: list[ChartEdge], rows: Array, roots: tuple[int, ...], planar: bool | None = None) -> None:
         self.edges, self.roots = edges, roots
         self.screws = np.concatenate([edge.screws for edge in edges]) if edges else np.zeros((0, 6))
         self.n = len(self.screws)
@@ -167,7 +164,7 @@ def _powers(screws: Array) -> tuple[Array, Array, Array]:
 
 
 def _forest(
-    edges: list[Edge], roots: tuple[int, ...]
+    edges: list[ChartEdge], roots: tuple[int, ...]
 ) -> tuple[dict[int, int], list[tuple[int, int, int]], Array, list[int]]:
     """Numbers of the bodies, the forest (body, edge, parent) with parents first, the signs (b, e) with which edges lead
     to each body, and the edges outside."""

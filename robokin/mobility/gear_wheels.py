@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.mobility.assembly import assembled, missing_geometry
-from robokin.mobility.couplings import Bearing
-from robokin.mobility.gears import PARALLEL, carried
+from robokin.mobility.gear_equations import PARALLEL, carried
+from robokin.mobility.rolling import Bearing
 from robokin.model import Mechanism, MechanismJoint
-
-Array = NDArray[np.float64]
 
 PULLEYS = 0.3
 """Radius of a belt's largest pulley, as a part of the distance of its axes, where no radii are given."""

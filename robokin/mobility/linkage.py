@@ -32,13 +32,11 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.mobility.screws import Element, exponential, logarithm, moved_screws
 from robokin.spatial import invert
-
-Array = NDArray[np.float64]
 
 CLOSED = 1e-12
 """A loop that lacks less [size and rad] is closed: some ten thousand times the rounding of its product."""
@@ -52,7 +50,7 @@ NEWTON_STEPS = 25
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class State(Brief):
+class LinkageState(Brief):
     """Where a linkage is: bodies (n, 4, 4) and joints (j, 4, 4), displacements from the reference, and how far each
     freedom has gone, values (f,) [rad | size]: exact where a joint's freedoms commute."""
 
@@ -85,7 +83,7 @@ class Linkage:
             row[j] += 1.0
         self.rows = np.zeros((0, len(self.screws))) if rows is None else rows
         unmoved = np.tile(np.eye(4), (bodies, 1, 1)), np.tile(np.eye(4), (len(elements), 1, 1))
-        self.reference = State(*unmoved, np.zeros(len(self.screws)))
+        self.reference = LinkageState(*unmoved, np.zeros(len(self.screws)))
 
     @property
     def bodies(self) -> tuple[int, ...]:
@@ -97,36 +95,36 @@ class Linkage:
         """Σf of the elementary joints."""
         return len(self.screws)
 
-    def twists(self, state: State) -> Array:
+    def twists(self, state: LinkageState) -> Array:
         """The twists (f, 6) of all freedoms where the linkage is."""
         return moved_screws(state.bodies[self.body], self.screws)
 
-    def jacobian(self, state: State) -> Array:
+    def jacobian(self, state: LinkageState) -> Array:
         """The equations of loops and rows (6 l + m, f): what joint speeds must not add up to."""
         S = self.twists(state)
         loops = (self.loops[:, None, self.joint] * S.T).reshape(6 * len(self.loops), len(S))
         return np.concatenate([loops, self.rows])
 
-    def body_twists(self, state: State, speeds: Array) -> Array:
+    def body_twists(self, state: LinkageState, speeds: Array) -> Array:
         """The twists (n, 6, k) of the bodies for joint speeds (f, k)."""
         moves = self.twists(state)[:, :, None] * speeds[:, None, :]
         return np.asarray(np.einsum("nf,fck->nck", self.paths[:, self.joint], moves))
 
-    def moved(self, state: State, dq: Array) -> State:
+    def moved(self, state: LinkageState, dq: Array) -> LinkageState:
         """The state after every joint has moved by dq (f,) within its subgroup."""
         steps = np.zeros((len(self.elements), 6))
         np.add.at(steps, self.joint, self.screws * dq[:, None])
         return self.placed(exponential(steps) @ state.joints, state.values + dq)
 
-    def placed(self, joints: Array, values: Array) -> State:
+    def placed(self, joints: Array, values: Array) -> LinkageState:
         """The state with displacements (j, 4, 4) of the joints; of those that close loops, too."""
         bodies = self.reference.bodies.copy()
         for body, j, parent in self.order:
             h = joints[j] if self.elements[j].a == parent else invert(joints[j])
             bodies[body] = bodies[parent] @ h
-        return State(bodies, joints, values)
+        return LinkageState(bodies, joints, values)
 
-    def lack(self, state: State) -> Array:
+    def lack(self, state: LinkageState) -> Array:
         """What the loops lack of closing and the rows of zero (6 l + m,) [size, rad]."""
         if not self.chords:
             return np.asarray(self.rows @ state.values)
@@ -137,11 +135,11 @@ class Linkage:
 
     def closed(
         self,
-        state: State,
+        state: LinkageState,
         tolerance: float = CLOSED,
-        keep: NDArray[np.bool_] | None = None,
+        keep: Flags | None = None,
         rank: float = RANK,
-    ) -> tuple[State, Array, float]:
+    ) -> tuple[LinkageState, Array, float]:
         """The nearest closed state that Newton's steps find, how the joints moved (f,), and what it still lacks.
 
         keep: (f,) joints that are True stay where they are; rank: singular values below this close no loop.

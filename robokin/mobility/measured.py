@@ -15,13 +15,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.brief import Brief
 from robokin.mobility.reduced import Reduced, directions
 from robokin.mobility.zeros import spread
-
-Array = NDArray[np.float64]
 
 SECOND = 1e-3
 """Second derivatives below this part of the greatest are none."""

@@ -24,18 +24,15 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robokin.mobility.assembly import Assembly
-from robokin.mobility.blocks import Block, chart_of
 from robokin.mobility.chart import Chart
 from robokin.mobility.linkage import RANK
-from robokin.mobility.mobility import Part
+from robokin.mobility.linkage_blocks import Block, chart_of
 from robokin.mobility.reduced import Reduced, directions
 from robokin.mobility.screws import Element, elements_of
+from robokin.mobility.true_mobility import BlockMobility
 from robokin.model import MechanismJoint, Rounding
-
-Array = NDArray[np.float64]
 
 NEARLY = 4e-3
 """Singular values below this part of the greatest, but not zero, may be those of a geometry that is wrong by about as
@@ -60,7 +57,7 @@ LOOKED_AT = (0.4, 0.3, 0.2, 0.1)
 """Radii [rad | size] of the points."""
 
 
-def nearly_more(assembly: Assembly, part: Part) -> int:
+def nearly_more(assembly: Assembly, part: BlockMobility) -> int:
     """How many more motions a block would have if its dimensions were exact: 0 where their digits do not explain it."""
     chart = part.block.chart
     if part.undecided is not None or not np.any((part.values > RANK) & (part.values < NEARLY)):

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from robokin.arrays import Array
 
 RANK = 1e-6
 """Singular values of unit twists below this are no motion: looser than for the loops, since a tangent found by

@@ -13,9 +13,9 @@ blocks; if there are several, the first.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.mobility.blocks import components
+from robokin.arrays import Array
+from robokin.mobility.linkage_blocks import components
 
 
 def pairs(joints: list[tuple[int, ...]]) -> list[list[tuple[int, int]]]:
@@ -31,7 +31,7 @@ def pairs(joints: list[tuple[int, ...]]) -> list[list[tuple[int, int]]]:
     return [_tree(links, first + number, group_of) for number, links in enumerate(joints)]
 
 
-def from_first(links: tuple[int, ...], joined: list[tuple[int, int]]) -> NDArray[np.float64]:
+def from_first(links: tuple[int, ...], joined: list[tuple[int, int]]) -> Array:
     """The matrix (m - 1, m - 1) from the turns of a pin's pairs to those of its links, in order, against the first."""
     ways = {links[0]: np.zeros(len(joined))}
     while len(ways) < len(links):

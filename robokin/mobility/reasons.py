@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from robokin.mobility.mobility import Motion
+from robokin.mobility.true_mobility import TrueMobility
 from robokin.model import Mechanism
 
 SPACES = {"planar": "in the plane", "spherical": "on the sphere", "spatial": "in space"}
 
 
 def reason(
-    mechanism: Mechanism, count: int, motion: Motion, verdict: str, strained: tuple[str, ...], nearly: int
+    mechanism: Mechanism, count: int, motion: TrueMobility, verdict: str, strained: tuple[str, ...], nearly: int
 ) -> str | None:
     """Why count and truth differ, or what else is special; None where there is nothing to say."""
     true = motion.finite
@@ -53,7 +53,7 @@ def _between(least: int, most: int) -> str:
     return f"at least {least} and at most {most} {'is a motion' if most == 1 else 'are motions'}"
 
 
-def _trembles(motion: Motion) -> str:
+def _trembles(motion: TrueMobility) -> str:
     """What only trembles, and which order of the constraints forbids it."""
     true = motion.finite
     infinitesimal = f"{motion.generic} infinitesimal motion{_s(motion.generic)}"
@@ -66,7 +66,7 @@ def _trembles(motion: Motion) -> str:
     return f"shaky: of {infinitesimal} {forbids} only {true} {lead} somewhere, the rest is a tremble{end}"
 
 
-def _here(motion: Motion) -> str:
+def _here(motion: TrueMobility) -> str:
     """What is special of the pose; "" where nothing is."""
     here = ""
     if motion.instantaneous > motion.generic or motion.count > 1:

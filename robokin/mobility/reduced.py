@@ -24,12 +24,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.mobility.chart import Chart
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 NEWTON_STEPS = 14
 """Steps for y(x); most take five."""
@@ -58,7 +55,7 @@ NOISE = 100.0
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class ReducedPoints:
     """Points of a reduction: x (N, k), y (N, r), the reduced constraints g (N, c) there, their derivative (N, c, k),
     and where Newton's steps have solved the regular ones."""
 
@@ -105,7 +102,7 @@ class Reduced:
         g = F @ self.U0 + (C @ dy[..., None])[..., 0]
         return lacking, g, self.U0.T @ J @ self.V0 + C @ slope, dy, slope
 
-    def at(self, x: Array, y: Array | None = None) -> Found:
+    def at(self, x: Array, y: Array | None = None) -> ReducedPoints:
         """The points over x (N, k); y (N, r) where the steps begin."""
         y = np.zeros((len(x), self.rank)) if y is None else y.copy()
         for _ in range(NEWTON_STEPS):
@@ -118,7 +115,7 @@ class Reduced:
         solved = (off < 1e-6) & (size < 1e-5) & (np.max(np.abs(y), axis=1, initial=0.0) < FARTHEST)
         lacking, g, Dg, _, _ = self.equations(x, y)
         solved &= np.max(np.abs(lacking), axis=1, initial=0.0) < SOLVED
-        return Found(x, y, np.where(solved[:, None], g, np.inf), Dg, solved)
+        return ReducedPoints(x, y, np.where(solved[:, None], g, np.inf), Dg, solved)
 
     def tolerance(self, radius: Array | float) -> Array | float:
         """Reduced constraints below this at a radius are none."""

@@ -19,14 +19,12 @@ from math import factorial
 
 import numpy as np
 from numpy.polynomial import Chebyshev
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.mobility.chart import Chart
 from robokin.mobility.measured import Branch
 from robokin.mobility.reduced import Reduced, directions
 from robokin.mobility.zeros import sought
-
-Array = NDArray[np.float64]
 
 MOST = 8
 """The greatest m: the next would need a digit more than there are."""

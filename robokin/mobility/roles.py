@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Flags
 from robokin.mobility.assembly import Assembly
 from robokin.mobility.linkage import RANK, Linkage
-from robokin.mobility.mobility import STILL, Motion
-
-Array = NDArray[np.float64]
+from robokin.mobility.true_mobility import STILL, TrueMobility
 
 PLANE = (0, 1, 5)
 """The parts of a twist that a motion in the plane has: x, y and the turn about z."""
 
 
-def still_freedoms(linkage: Linkage, motion: Motion) -> NDArray[np.bool_]:
+def still_freedoms(linkage: Linkage, motion: TrueMobility) -> Flags:
     """Freedoms (f,) that only tremble along a branch where constraints vanish many times: steps that do not hold them
     would go along with them as far as rounding lets them."""
     moving = np.isin(linkage.joint, list(set().union(*(course.moving for course in motion.courses))))
@@ -32,7 +30,7 @@ def moving_joints(assembly: Assembly, elements: frozenset[int]) -> tuple[str, ..
     return tuple(joint.name for joint in assembly.mechanism.joints if joint.name in names)
 
 
-def strained_joints(assembly: Assembly, motion: Motion) -> tuple[str, ...]:
+def strained_joints(assembly: Assembly, motion: TrueMobility) -> tuple[str, ...]:
     """The joints through which redundant constraints can strain the mechanism, in the space that it lives in."""
     linkage, loops = assembly.linkage, assembly.linkage.loops
     # In the plane two forces and a moment are constraints that λ = 3 counts; the rest is strained by every loop.
@@ -59,7 +57,7 @@ def strained_joints(assembly: Assembly, motion: Motion) -> tuple[str, ...]:
     return tuple(joint.name for joint in assembly.mechanism.joints if joint.name in found)
 
 
-def idle_freedoms(assembly: Assembly, motion: Motion) -> int:
+def idle_freedoms(assembly: Assembly, motion: TrueMobility) -> int:
     """Freedoms of one link, or of two that a joint connects, that move nothing else: spins of rods and legs."""
     linkage, T = assembly.linkage, motion.tangent
     if not T.shape[1]:

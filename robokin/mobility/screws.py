@@ -8,12 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.model import MechanismJoint
 from robokin.spatial import transform
-
-Array = NDArray[np.float64]
 
 SMALL = 1e-4
 """An angle [rad] below which sin and cos quotients are taken from their series, good to 1e-17 there."""

@@ -11,18 +11,16 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.errors import InputError, did_you_mean, shown
 from robokin.mobility.assembly import Assembly, assembled, parts_of
-from robokin.mobility.columns import labels_of, of_pins, whole_rotations
-from robokin.mobility.linkage import RANK, Linkage, State
-from robokin.mobility.mobility import Motion, beginnings_of, kernel_at, motion_of, velocities_of
+from robokin.mobility.linkage import RANK, Linkage, LinkageState
 from robokin.mobility.roles import still_freedoms
+from robokin.mobility.trace_columns import labels_of, of_pins, whole_rotations
+from robokin.mobility.true_mobility import TrueMobility, beginnings_of, kernel_at, motion_of, velocities_of
 from robokin.model import Mechanism
-
-Array = NDArray[np.float64]
 
 PACE = 0.04
 """Greatest joint motion of a step [rad | size]: some 160 to a turn."""
@@ -57,7 +55,7 @@ class Trace(Brief):
     mechanism: Mechanism
     labels: tuple[str, ...]
     values: Array
-    turning: NDArray[np.bool_]
+    turning: Flags
     poses: Array
     closed: bool
     driven: str
@@ -113,7 +111,7 @@ def _check_whole(mechanism: Mechanism) -> None:
         raise InputError(f"no joint leads from the ground to {parts[1][0]}, expected a mechanism of one piece")
 
 
-def _roles(assembly: Assembly, drive: str | None) -> tuple[int, NDArray[np.bool_]]:
+def _roles(assembly: Assembly, drive: str | None) -> tuple[int, Flags]:
     """The number of the joint that leads, and (f,) which freedoms are held."""
     joints = assembly.mechanism.joints
     names = [joint.name for joint in joints]
@@ -131,7 +129,7 @@ def _roles(assembly: Assembly, drive: str | None) -> tuple[int, NDArray[np.bool_
     return leader, held
 
 
-def _motion(assembly: Assembly) -> Motion:
+def _motion(assembly: Assembly) -> TrueMobility:
     """What the mechanism can do. Raises InputError where that is nothing, or not known."""
     motion = motion_of(assembly.linkage, assembly.mechanism.order)
     name = assembly.mechanism.name
@@ -142,9 +140,7 @@ def _motion(assembly: Assembly) -> Motion:
     return motion
 
 
-def _beginning(
-    assembly: Assembly, motion: Motion, leader: int, held: NDArray[np.bool_], still: NDArray[np.bool_]
-) -> Array:
+def _beginning(assembly: Assembly, motion: TrueMobility, leader: int, held: Flags, still: Flags) -> Array:
     """The direction (f,) in which the leader goes on most of all, the rest as little as may be."""
     linkage = assembly.linkage
     kernel = _held(beginnings_of(linkage, motion) if motion.finite else velocities_of(linkage, motion), held)
@@ -161,12 +157,12 @@ def _beginning(
     return np.asarray(direction / np.max(np.abs(direction)))
 
 
-def _allowed(linkage: Linkage, state: State, held: NDArray[np.bool_]) -> Array:
+def _allowed(linkage: Linkage, state: LinkageState, held: Flags) -> Array:
     """The kernel (f, k) of the loops with some joints held."""
     return _held(kernel_at(linkage, state)[1], held)
 
 
-def _held(kernel: Array, held: NDArray[np.bool_]) -> Array:
+def _held(kernel: Array, held: Flags) -> Array:
     """An orthonormal basis (f, k) of the velocities that leave some joints where they are."""
     kernel = np.linalg.qr(kernel)[0] if kernel.shape[1] else kernel
     if not held.any():
@@ -175,7 +171,7 @@ def _held(kernel: Array, held: NDArray[np.bool_]) -> Array:
     return np.asarray(kernel @ Vt[int(np.sum(values > 1e-8)) :].T)
 
 
-def _follow(linkage: Linkage, direction: Array, held: NDArray[np.bool_]) -> tuple[list[State], list[Array], bool]:
+def _follow(linkage: Linkage, direction: Array, held: Flags) -> tuple[list[LinkageState], list[Array], bool]:
     """States along the curve, the joints' totals (f,) there, and whether it comes back to its beginning."""
     state, total = linkage.reference, np.zeros(linkage.freedoms)
     states, totals = [state], [total]
@@ -197,7 +193,7 @@ def _follow(linkage: Linkage, direction: Array, held: NDArray[np.bool_]) -> tupl
     return states, totals, False
 
 
-def _meets(linkage: Linkage, state: State, direction: Array) -> bool:
+def _meets(linkage: Linkage, state: LinkageState, direction: Array) -> bool:
     """Whether the beginning lies ahead, within one pace: the last step leads onto it and not past it."""
     after = _onward(linkage, state, direction, PACE, np.zeros(linkage.freedoms, dtype=bool))
     if after is None:
@@ -210,8 +206,8 @@ def _meets(linkage: Linkage, state: State, direction: Array) -> bool:
 
 
 def _onward(
-    linkage: Linkage, state: State, direction: Array, pace: float, held: NDArray[np.bool_]
-) -> tuple[State, Array] | None:
+    linkage: Linkage, state: LinkageState, direction: Array, pace: float, held: Flags
+) -> tuple[LinkageState, Array] | None:
     """The state one pace along the curve and how the joints moved; None where the curve ends."""
     kernel = _allowed(linkage, state, held)
     ahead = kernel @ (kernel.T @ direction)
@@ -228,8 +224,8 @@ def _onward(
 
 
 def _evenly(
-    linkage: Linkage, states: list[State], totals: list[Array], count: int, held: NDArray[np.bool_], closed: bool
-) -> tuple[list[State], Array]:
+    linkage: Linkage, states: list[LinkageState], totals: list[Array], count: int, held: Flags, closed: bool
+) -> tuple[list[LinkageState], Array]:
     """`count` states evenly spaced by the greatest joint motion, and the joints' totals (count, f)."""
     along = np.concatenate([[0.0], np.cumsum([np.max(np.abs(b - a)) for a, b in pairwise(totals)])])
     end = along[-1]
@@ -265,13 +261,13 @@ def _lead(assembly: Assembly, leader: int, totals: list[Array]) -> int | None:
 
 def _by_leader(
     linkage: Linkage,
-    states: list[State],
+    states: list[LinkageState],
     totals: list[Array],
     count: int,
-    held: NDArray[np.bool_],
+    held: Flags,
     closed: bool,
     lead: int,
-) -> tuple[list[State], Array]:
+) -> tuple[list[LinkageState], Array]:
     """`count` states in even steps of the freedom that leads, and the joints' totals (count, f)."""
     along = np.array(totals)[:, lead]
     sign, keep = np.sign(along[-1]), held.copy()

@@ -5,21 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.brief import Answer
 from robokin.errors import InputError, InputTypeError, did_you_mean
 from robokin.expected import described, expect_whole
 from robokin.mobility.assembly import Assembly, assembled, missing_geometry, parts_of, space_fault
 from robokin.mobility.count import grubler
-from robokin.mobility.mobility import STILL, Motion, along, motion_of, velocities_of
 from robokin.mobility.nearly import nearly_more
 from robokin.mobility.output import Output, kind_of, twist_basis
 from robokin.mobility.reasons import reason
 from robokin.mobility.roles import idle_freedoms, moving_joints, strained_joints
+from robokin.mobility.true_mobility import STILL, TrueMobility, along, motion_of, velocities_of
 from robokin.model import Mechanism, expect_mechanism
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,7 +38,7 @@ class Mobility(Answer):
 
     mechanism: Mechanism
     count: int
-    motion: Motion | None
+    motion: TrueMobility | None
     assembly: Assembly | None
     mobility: int | None
     verdict: str
@@ -111,7 +109,12 @@ def _loose(mechanism: Mechanism, parts: list[tuple[str, ...]]) -> str:
 
 
 def _judged(
-    mechanism: Mechanism, count: int, assembly: Assembly, motion: Motion, pair: tuple[str, str] | None, driven: int
+    mechanism: Mechanism,
+    count: int,
+    assembly: Assembly,
+    motion: TrueMobility,
+    pair: tuple[str, str] | None,
+    driven: int,
 ) -> Mobility:
     linkage, T = assembly.linkage, motion.tangent
     nearly = sum(nearly_more(assembly, part) for part in motion.parts)
@@ -159,7 +162,7 @@ def _output(assembly: Assembly, bodies: Array, pair: tuple[str, str]) -> Output:
     return Output(*pair, basis.shape[1], kind_of(basis))
 
 
-def _outputs(assembly: Assembly, motion: Motion, pair: tuple[str, str]) -> tuple[Output, ...]:
+def _outputs(assembly: Assembly, motion: TrueMobility, pair: tuple[str, str]) -> tuple[Output, ...]:
     """How one link moves against another in each branch."""
     found = []
     for course in motion.courses:
@@ -168,7 +171,7 @@ def _outputs(assembly: Assembly, motion: Motion, pair: tuple[str, str]) -> tuple
     return tuple(found)
 
 
-def _output_here(assembly: Assembly, motion: Motion, pair: tuple[str, str]) -> int:
+def _output_here(assembly: Assembly, motion: TrueMobility, pair: tuple[str, str]) -> int:
     """The output's freedoms at the given configuration."""
     linkage = assembly.linkage
     bodies = linkage.body_twists(linkage.reference, velocities_of(linkage, motion))
@@ -190,7 +193,7 @@ def _between(mechanism: Mechanism, between: tuple[str, str] | None) -> tuple[str
     return between
 
 
-def _verdict(count: int, motion: Motion, nearly: int) -> str:
+def _verdict(count: int, motion: TrueMobility, nearly: int) -> str:
     if motion.undecided is not None:
         return "undecided"
     if nearly:

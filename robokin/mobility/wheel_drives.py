@@ -21,19 +21,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.mobility.wheel_rows import Frame, command_rows, rank_of
+from robokin.arrays import Array
+from robokin.mobility.wheel_rows import WheelFrame, command_rows, rank_of
 from robokin.model import Wheel, WheeledBase
-
-Array = NDArray[np.float64]
 
 STRAIGHT = 8
 """Directions of straight motion behind which castors are let trail: their places mean nothing."""
 
 
 @dataclass(frozen=True)
-class Commands:
+class Commanded:
     """controllable: of the degree of mobility; least: where castors trail; steering: of the degree of steerability;
     speeds: how many are commanded; conditions: how many conditions they must satisfy; note: what is special, or None.
     """
@@ -47,8 +45,8 @@ class Commands:
 
 
 def commands_of(
-    base: WheeledBase, frame: Frame, situations: Sequence[tuple[Array, Array]], steering: Array, free: Array
-) -> Commands:
+    base: WheeledBase, frame: WheelFrame, situations: Sequence[tuple[Array, Array]], steering: Array, free: Array
+) -> Commanded:
     """What the motors command.
 
     situations: twists (3,) for which the steered wheels stand and the twists (3, k) that the constraints then leave;
@@ -78,10 +76,10 @@ def commands_of(
     mobility = min((N.shape[1] for _, N in situations), default=0)
     conditions = speeds - controllable
     note = _note(base, mobility, controllable, least, conditions, rank_of(steering) - commanded)
-    return Commands(controllable, least, commanded, speeds, conditions, note)
+    return Commanded(controllable, least, commanded, speeds, conditions, note)
 
 
-def _rows(frame: Frame, driven: Sequence[Wheel], twist: Array, castors: dict[str, float]) -> Array:
+def _rows(frame: WheelFrame, driven: Sequence[Wheel], twist: Array, castors: dict[str, float]) -> Array:
     """(r, 3) the rows of all motors: steered wheels stand for a twist, castors at given angles."""
     rows: list[Array] = []
     for wheel in driven:

@@ -23,11 +23,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.model import Wheel
-
-Array = NDArray[np.float64]
 
 RANK = 1e-9
 """Singular values below this part of the greatest, or of 1, are zero: rows are of size 1, and rounding leaves 1e-16 of
@@ -35,7 +33,7 @@ what is zero, also where all of it is."""
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
+class WheelFrame:
     """Where twists are taken, (x, y) [m], and the length [m] that is one: so ranks depend on neither place nor size."""
 
     x: float
@@ -43,7 +41,7 @@ class Frame:
     size: float
 
     @classmethod
-    def of(cls, wheels: Sequence[Wheel]) -> Frame:
+    def of(cls, wheels: Sequence[Wheel]) -> WheelFrame:
         """The middle of the wheels and the greatest distance from it."""
         places = np.array([(wheel.x, wheel.y) for wheel in wheels])
         x, y = places.mean(axis=0)
@@ -67,12 +65,12 @@ class Frame:
         return float(np.arctan2(v_y, v_x)) if np.hypot(v_x, v_y) > RANK else wheel.angle
 
 
-def sliding_row(frame: Frame, wheel: Wheel, angle: float) -> Array:
+def sliding_row(frame: WheelFrame, wheel: Wheel, angle: float) -> Array:
     """(3,) what a fixed or steered wheel that rolls in a direction forbids: speed across it."""
     return frame.along(wheel, angle + 0.5 * np.pi)
 
 
-def command_rows(frame: Frame, wheel: Wheel, angle: float) -> list[Array]:
+def command_rows(frame: WheelFrame, wheel: Wheel, angle: float) -> list[Array]:
     """Rows (3,) of the speeds that a wheel's motors command, at the direction in which it stands."""
     if wheel.type == "swedish":
         # Across the rollers, where they cannot slip.

@@ -12,11 +12,9 @@ lost, or whose direction jumps, was not on a branch that passes through the pose
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.mobility.reduced import Reduced
-
-Array = NDArray[np.float64]
 
 WIDEST, NARROWEST = 0.4, 2e-3
 """Greatest and least radius [rad | size] of the spheres."""
@@ -94,7 +92,7 @@ def sought(reduced: Reduced, radius: float) -> tuple[Array, Array]:
 
 
 def _on_sphere(
-    reduced: Reduced, x: Array, y: Array, radius: float, damped: NDArray[np.bool_], steps: int
+    reduced: Reduced, x: Array, y: Array, radius: float, damped: Flags, steps: int
 ) -> tuple[Array, Array, Array]:
     """Zeros x, y on |x| = radius near by, and what g and the regular equations leave there (N,).
 
@@ -125,7 +123,7 @@ def _on_sphere(
     return x, y, np.where(np.isfinite(size), size, np.inf)
 
 
-def _toward_zero(x: Array, g: Array, Dg: Array, off: Array, damped: NDArray[np.bool_]) -> Array:
+def _toward_zero(x: Array, g: Array, Dg: Array, off: Array, damped: Flags) -> Array:
     """Steps (N, k) along the sphere toward g = 0, and back on the sphere, which is off by (N,).
 
     damped: (N,) whether by Levenberg and Marquardt: with a damping as g is, so that small constraints do not lead

@@ -2,7 +2,7 @@
 
 from robokin.model.mechanism import Mechanism, MechanismJoint, Rounding, expect_mechanism
 from robokin.model.robot import Joint, JointType, Robot, expect_robot
-from robokin.model.wheeled import Wheel, WheeledBase, expect_wheeled
+from robokin.model.wheeled_base import Wheel, WheeledBase, expect_wheeled
 
 __all__ = [
     "Joint", "JointType", "Mechanism", "MechanismJoint", "Robot", "Rounding", "Wheel", "WheeledBase",

@@ -8,15 +8,14 @@ from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.brief import Answer, Brief
 from robokin.errors import Note, shown
 from robokin.expected import expect_kind
 from robokin.model.blueprint import AssemblyMode
 from robokin.units import Units
 
-Array = NDArray[np.float64]
 Space = Literal["planar", "spherical", "spatial"]
 
 LAMBDA: Mapping[str, int] = MappingProxyType({"planar": 3, "spherical": 3, "spatial": 6})

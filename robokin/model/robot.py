@@ -10,14 +10,14 @@ from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from robokin.arrays import Array, Flags
 from robokin.brief import Answer, Brief
 from robokin.errors import InputError, Note, shown
 from robokin.expected import expect_kind, expect_numbers
 from robokin.units import Units
 
-Array = NDArray[np.float64]
 Convention = Literal["standard", "modified", "frames"]
 
 LIMIT_TOLERANCE = 1e-9
@@ -143,7 +143,7 @@ class Robot(Answer):
         return "".join(joint.type.letter for joint in self.joints)
 
     @cached_property
-    def revolute(self) -> NDArray[np.bool_]:
+    def revolute(self) -> Flags:
         """(n,) whether each joint turns."""
         mask = np.array([joint.type is JointType.REVOLUTE for joint in self.joints], dtype=bool)
         mask.flags.writeable = False
@@ -159,7 +159,7 @@ class Robot(Answer):
         """(n, 2) least and greatest value of each joint [rad | m], ±inf where there is none."""
         return _read_only(np.array([joint.limits for joint in self.joints]).reshape(self.n, 2))
 
-    def within_limits(self, q: ArrayLike) -> NDArray[np.bool_]:
+    def within_limits(self, q: ArrayLike) -> Flags:
         """(...) whether each q: (..., n) [rad | m] respects every limit; limits are inclusive."""
         q = expect_numbers(q, "q", f"joint values: numbers in an array (..., {self.n})")
         if q.ndim == 0 or q.shape[-1] != self.n:

@@ -10,13 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.kinematics.chain import chain_of, row_constants
+from robokin.arrays import Array
+from robokin.kernel.chain import chain_of, row_constants
 from robokin.kinematics.forward import joint_frames
 from robokin.model import Robot
-
-Array = NDArray[np.float64]
 
 NOTHING = 1e-9
 """A step shorter than this part of the arm is no step: tables are written to five digits."""
@@ -55,7 +53,7 @@ class Bar:
 
 
 @dataclass(frozen=True, eq=False)
-class Mark:
+class FrameMark:
     """A frame with its name: T (4, 4) [m] in a body."""
 
     name: str
@@ -64,7 +62,7 @@ class Mark:
 
 
 @dataclass(frozen=True, eq=False)
-class Arm:
+class ArmShape:
     """What a robot looks like.
 
     length: of the stretched arm [m], which sizes are measured by; lines: for each body the corners (k, 3) [m] of its
@@ -75,7 +73,7 @@ class Arm:
     length: float
     bars: tuple[Bar, ...]
     lines: tuple[Array, ...]
-    marks: tuple[Mark, ...]
+    marks: tuple[FrameMark, ...]
 
 
 def default_configuration(robot: Robot) -> tuple[Array, str]:
@@ -107,7 +105,7 @@ def body_frames(robot: Robot, q: Array) -> Array:
     return np.array(frames)
 
 
-def arm_of(robot: Robot) -> Arm:
+def arm_of(robot: Robot) -> ArmShape:
     """The pieces and the frames of a robot."""
     lines, starts, marks = _walk(robot)
     length = sum(float(np.sum(np.linalg.norm(np.diff(line, axis=0), axis=1))) for line in lines)
@@ -126,7 +124,7 @@ def arm_of(robot: Robot) -> Arm:
         if not robot.revolute[i]:
             bars += _slide(i, start, stroke, scale)
     bars += _base(robot, starts, centres, scale)
-    return Arm(robot, length, tuple(bars), tuple(lines), tuple(marks))
+    return ArmShape(robot, length, tuple(bars), tuple(lines), tuple(marks))
 
 
 def plane_of(robot: Robot) -> Array | None:
@@ -141,7 +139,7 @@ def plane_of(robot: Robot) -> Array | None:
     return np.asarray(normal) if np.all(np.where(robot.revolute, aligned, level)) else None
 
 
-def line_of(arm: Arm, frames: Array) -> Array:
+def line_of(arm: ArmShape, frames: Array) -> Array:
     """(k, 3) [m] the corners of the whole arm in the world, from its base to its tool; frames: `body_frames`."""
     parts = [line @ frame[:3, :3].T + frame[:3, 3] for line, frame in zip(arm.lines, frames, strict=True)]
     return _corners(np.concatenate(parts), NOTHING * arm.length)
@@ -150,11 +148,11 @@ def line_of(arm: Arm, frames: Array) -> Array:
 # How it is made -------------------------------------------------------------------------------------------
 
 
-def _walk(robot: Robot) -> tuple[list[Array], list[Array], list[Mark]]:
+def _walk(robot: Robot) -> tuple[list[Array], list[Array], list[FrameMark]]:
     """The corners of each body's link, the frame in which each joint starts (in the body before), the frames."""
     T = np.array(robot.base)
     lines, starts = [[T[:3, 3]]], []
-    marks = [Mark("base", 0, T)]
+    marks = [FrameMark("base", 0, T)]
     for number, row in enumerate(robot.rows, start=1):
         before, after = row_constants(row, robot.convention)
         T = T @ before
@@ -169,10 +167,10 @@ def _walk(robot: Robot) -> tuple[list[Array], list[Array], list[Mark]]:
             lines[-1].append(T[:3, 3] + (row.sense if row.moves else 1) * row.d * T[:3, 2])
         T = T @ after
         lines[-1].append(T[:3, 3])
-        marks.append(Mark(str(number), len(lines) - 1, T))
+        marks.append(FrameMark(str(number), len(lines) - 1, T))
     T = T @ robot.tool
     lines[-1].append(T[:3, 3])
-    marks.append(Mark("tool", len(lines) - 1, T))
+    marks.append(FrameMark("tool", len(lines) - 1, T))
     return [np.array(line) for line in lines], starts, marks
 
 

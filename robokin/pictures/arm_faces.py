@@ -6,11 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.pictures.arm import SQUARE, Arm, Bar, ends_of, perpendicular
-
-Array = NDArray[np.float64]
+from robokin.arrays import Array
+from robokin.pictures.arm import SQUARE, ArmShape, Bar, ends_of, perpendicular
 
 COLOURS = {
     "link": "#a9bac9", "slide": "#e5b48f", "revolute": "#2b628f", "prismatic": "#c8551b", "stroke": "#b98a6a",
@@ -61,7 +59,7 @@ def colour(name: str, pale: float = 0.0) -> Array:
 
 
 def arm_faces(
-    arm: Arm, frames: Array, eye: Array, ghost: str | None = None, drawn: set[tuple[object, ...]] | None = None
+    arm: ArmShape, frames: Array, eye: Array, ghost: str | None = None, drawn: set[tuple[object, ...]] | None = None
 ) -> Iterator[Face]:
     """The faces of an arm in the world; frames: `body_frames`; eye: `eye_axes`; ghost: the one colour of a ghost.
 

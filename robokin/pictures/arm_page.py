@@ -9,15 +9,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.kinematics.chain import chain_of
+from robokin.arrays import Array
+from robokin.kernel.chain import chain_of
 from robokin.pictures.arm import Bar, default_configuration
 from robokin.pictures.arm_faces import COLOURS, CROSS, GHOSTS
 from robokin.pictures.arm_scene import Posture, Scene
-from robokin.pictures.page import filled
-
-Array = NDArray[np.float64]
+from robokin.pictures.workspace_page import filled
 
 DIGITS = 5
 """Significant digits of what is only drawn: far finer than a screen."""

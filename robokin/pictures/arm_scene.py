@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.model import Robot
-from robokin.pictures.arm import Arm, Mark, body_frames, ends_of, plane_of
+from robokin.pictures.arm import ArmShape, FrameMark, body_frames, ends_of, plane_of
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 SLANTING = (-58.0, 22.0)
 """Azimuth and elevation [°] of the eye that a solid arm is seen from: x to the right, y away."""
@@ -48,7 +46,7 @@ class Scene:
     title: str
     subtitle: str
     units: Units
-    arm: Arm
+    arm: ArmShape
     postures: Sequence[Posture]
     target: Array | None
     frames: bool
@@ -77,7 +75,7 @@ class Scene:
         margin = MARGIN * float(np.max(high - low))
         return low - margin, high + margin
 
-    def marks(self) -> list[Mark]:
+    def marks(self) -> list[FrameMark]:
         """The frames that are drawn."""
         return [mark for mark in self.arm.marks if self.frames or mark.name in ("base", "tool")]
 

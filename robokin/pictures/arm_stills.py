@@ -6,12 +6,12 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.pictures.arm import body_frames, line_of
 from robokin.pictures.arm_faces import GHOSTS, Face, arm_faces, colour, cross_faces, frame_faces, ordered
 from robokin.pictures.arm_scene import Scene, axis_names, eye_axes
-from robokin.pictures.stills import drawing, written
+from robokin.pictures.workspace_stills import drawing, written
 from robokin.units import Units
 
 if TYPE_CHECKING:
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 
 SIDE = 5.6
 """Inches of the drawing's longer side."""

@@ -5,14 +5,11 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.pictures.arm import body_frames, line_of
 from robokin.pictures.arm_scene import PLANES, Scene, axis_names, eye_axes
-from robokin.pictures.text import braille, dot_grid, framed
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from robokin.pictures.text_pictures import braille, dot_grid, framed
 
 BLOB = 1.6
 """Radius of a joint in dots."""
@@ -58,7 +55,7 @@ def arm_text(scene: Scene) -> str:
     return framed(page, corner, (2 * step * scale, 4 * step * scale), labels)
 
 
-def mark_dots(mask: Mask, grid: Array, step: float, points: Array) -> None:
+def mark_dots(mask: Flags, grid: Array, step: float, points: Array) -> None:
     """Set the dots of a grid, `step` apart, that points (m, 2) fall on."""
     column = np.round((points[:, 0] - grid[0, 0, 0]) / step).astype(int)
     row = np.round((grid[0, 0, 1] - points[:, 1]) / step).astype(int)

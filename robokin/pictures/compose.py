@@ -7,21 +7,19 @@ from dataclasses import replace
 from itertools import pairwise, product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.kinematics.forward import forward_kinematics, link_frames
 from robokin.model import Robot
 from robokin.pictures.outline import CELLS, Outline, trace
-from robokin.pictures.picture import Cloud, Degrees, Panel
+from robokin.pictures.picture import Cloud, OrientationDegrees, Panel
 from robokin.pictures.views import UPRIGHT, View, freed, section_view, slice_view
-from robokin.workspace.cells import Cells, split_cells
 from robokin.workspace.extremes import extent
 from robokin.workspace.membership import Membership, finitely_many
 from robokin.workspace.region import Region, region_of
 from robokin.workspace.sampling import joint_values, positions
+from robokin.workspace.size_cells import Cells, split_cells
 from robokin.workspace.space import Space, space_of
-
-Array = NDArray[np.float64]
 
 SHADOW = 1 << 17
 """Configurations that show how large a picture must be, and what a set without a plane looks like."""
@@ -74,7 +72,11 @@ def solid_views(space: Space, say: Callable[[float], str], size: float, section:
 
 
 def panel(
-    view: View, cells: int | None = None, arms: Sequence[Array] = (), pose: str = "", degrees: Degrees | None = None
+    view: View,
+    cells: int | None = None,
+    arms: Sequence[Array] = (),
+    pose: str = "",
+    degrees: OrientationDegrees | None = None,
 ) -> Panel:
     """The set in a plane, with arms (k, 3) [m] in a named pose and, where limits matter, its outline without them."""
     outline = outline_in(view, cells)
@@ -125,7 +127,7 @@ def _rings(view: View, reach: float) -> Outline:
     foot = np.array([(axis[:3, 3] - view.origin) @ view.right, (axis[:3, 3] - view.origin) @ view.up])
     step = 2.0 * (reach + float(np.linalg.norm(foot))) / (4 * CELLS)
 
-    def inside(r: Array) -> NDArray[np.bool_]:
+    def inside(r: Array) -> Flags:
         return view.contains(foot + np.stack([np.abs(r), np.zeros_like(r)], axis=1))
 
     r = np.asarray(step * (np.arange(4 * CELLS) + 0.5), dtype=np.float64)

@@ -9,13 +9,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.pictures.mechanism_scene import MechanismScene
-from robokin.pictures.mechanism_shape import Piece, link_colours
-from robokin.pictures.page import filled
-
-Array = NDArray[np.float64]
+from robokin.pictures.mechanism_shape import StraightPiece, link_colours
+from robokin.pictures.workspace_page import filled
 
 DIGITS = 6
 """Significant digits of what is only drawn: far finer than a screen."""
@@ -70,7 +68,7 @@ def mechanism_page(scene: MechanismScene) -> bytes:
     return filled("mechanism.html", mechanism.name, data)
 
 
-def _piece(piece: Piece, scale: float) -> list[Any]:
+def _piece(piece: StraightPiece, scale: float) -> list[Any]:
     ends = [_short(piece.a * scale), _short(piece.b * scale), _short(piece.across)]
     return [piece.colour, *piece.bodies, *ends, *_short(np.array(piece.widths) * scale), piece.sides]
 

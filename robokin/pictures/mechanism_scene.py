@@ -6,16 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.mobility.trace import Trace
 from robokin.model import Mechanism
 from robokin.pictures.arm_faces import Face, colour, prism_faces
 from robokin.pictures.arm_scene import PLANES, SLANTING
 from robokin.pictures.mechanism_shape import Shape, shape_of
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 MARGIN = 0.03
 """Room about what is drawn, as a part of its longest side."""

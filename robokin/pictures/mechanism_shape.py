@@ -11,13 +11,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.mobility.gear_wheels import GearWheel, belt_lines, wheels_of
 from robokin.model import Mechanism, MechanismJoint
 from robokin.pictures.arm import ROUND, SQUARE, perpendicular
-
-Array = NDArray[np.float64]
 
 LINKS = ("#c8551b", "#1b4b72", "#3f7f4f", "#8a5a9e", "#b08a1e", "#4f8f9e", "#9e4f5f", "#5f5f9e")
 """Colours of links, told apart by the colour-blind too when few."""
@@ -52,7 +50,7 @@ SPHERE = 6
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class StraightPiece:
     """A straight piece from a (3,) to b (3,) [m] as assembled, on the bodies of its ends.
 
     across (3,): a direction that a square piece is turned to; widths: the radius, or half the side, at both ends [m].
@@ -82,7 +80,7 @@ class Shape:
     places: (j, 3) [m] where its joints are drawn."""
 
     mechanism: Mechanism
-    pieces: tuple[Piece, ...]
+    pieces: tuple[StraightPiece, ...]
     plates: tuple[Plate, ...]
     names: tuple[tuple[str, int, Array], ...]
     size: float
@@ -110,7 +108,7 @@ def shape_of(mechanism: Mechanism) -> Shape:
         height *= 0.6
     depth = _layers(mechanism, height)
     colours = link_colours(mechanism)
-    pieces: list[Piece] = []
+    pieces: list[StraightPiece] = []
     plates: list[Plate] = []
     for body, link in enumerate(mechanism.links):
         here = [i for i, joint in enumerate(mechanism.joints) if link in joint.links and not _wheel_only(joint)]
@@ -139,7 +137,7 @@ def shape_of(mechanism: Mechanism) -> Shape:
     return Shape(mechanism, tuple(pieces), tuple(plates), tuple(names), size, places)
 
 
-def _wheel(wheel: GearWheel, body: int, colour: str, height: float, depth: Array) -> list[Piece]:
+def _wheel(wheel: GearWheel, body: int, colour: str, height: float, depth: Array) -> list[StraightPiece]:
     """A disc, with a spoke that shows how it turns; a hoop where the other wheel is inside."""
     at, half = wheel.centre + depth[body], 0.12 * height * wheel.axis
     across = perpendicular(wheel.axis)
@@ -147,7 +145,7 @@ def _wheel(wheel: GearWheel, body: int, colour: str, height: float, depth: Array
     circle = at + wheel.radius * (np.cos(turns) * across + np.sin(turns) * np.cross(wheel.axis, across))
     if wheel.ring:
         return _bars(circle, body, colour, 0.12 * height)
-    disc = Piece(colour, (body, body), at - half, at + half, across, (wheel.radius, wheel.radius), 48)
+    disc = StraightPiece(colour, (body, body), at - half, at + half, across, (wheel.radius, wheel.radius), 48)
     return [disc, *_bars(np.array([at, circle[0]]) + 1.2 * half, body, SPOKE, 0.06 * height)]
 
 
@@ -211,7 +209,7 @@ def _distinct(points: Array, least: float) -> Array:
 
 def _link(
     corners: Array, body: int, colour: str, width: float, centre: Array | None, size: float
-) -> tuple[list[Piece], list[Plate]]:
+) -> tuple[list[StraightPiece], list[Plate]]:
     """A bar or an arc between two joints, a plate with a rim between more, a star where they lie in no plane."""
     if len(corners) < 2:
         return [], []
@@ -245,18 +243,18 @@ def _arc(a: Array, b: Array, centre: Array) -> Array:
     return np.asarray(centre + np.cos(turns) * u + np.sin(turns) * side)
 
 
-def _bars(line: Array, body: int, colour: str, width: float) -> list[Piece]:
+def _bars(line: Array, body: int, colour: str, width: float) -> list[StraightPiece]:
     bars = []
     for a, b in pairwise(line):
         step = (b - a) / np.linalg.norm(b - a)
-        bars.append(Piece(colour, (body, body), a, b, perpendicular(step), (width, width), 12))
+        bars.append(StraightPiece(colour, (body, body), a, b, perpendicular(step), (width, width), 12))
     return bars
 
 
 def _symbol(
     joint: MechanismJoint, bodies: tuple[int, int], place: Array, h: float, depth: Array, colours: dict[str, str],
     mechanism: Mechanism,
-) -> list[Piece]:  # fmt: skip
+) -> list[StraightPiece]:  # fmt: skip
     """The symbol of a joint between two bodies, on the first."""
     a, b = bodies
     kind, paint = joint.type, JOINTS.get(joint.type, "#444444")
@@ -265,9 +263,11 @@ def _symbol(
     middle = place + 0.5 * (depth[a] + depth[b])
     tall = 0.5 * abs(float(depth[a, 2] - depth[b, 2])) + (0.5 if mechanism.space != "planar" else 0.28) * h
 
-    def bar(half: Array, width: float, sides: int = ROUND, across: Array | None = None, paint: str = paint) -> Piece:
+    def bar(
+        half: Array, width: float, sides: int = ROUND, across: Array | None = None, paint: str = paint
+    ) -> StraightPiece:
         side = perpendicular(half) if across is None else across
-        return Piece(paint, (a, a), middle - half, middle + half, side, (width, width), sides)
+        return StraightPiece(paint, (a, a), middle - half, middle + half, side, (width, width), sides)
 
     if kind in ("revolute", "rolling"):
         return [bar(tall * axes[0], 0.3 * h)]
@@ -277,13 +277,15 @@ def _symbol(
         box = kind == "prismatic"
         across = np.array([0.0, 0.0, 1.0]) if mechanism.space == "planar" else perpendicular(axes[0])
         pieces = [bar(0.65 * h * axes[0], 0.27 * h, SQUARE if box else ROUND, across)]
-        slide = Piece(colours[mechanism.links[b]], (a, b), middle, middle, across, (0.15 * h, 0.15 * h),
+        slide = StraightPiece(colours[mechanism.links[b]], (a, b), middle, middle, across, (0.15 * h, 0.15 * h),
                       SQUARE if box else ROUND)  # fmt: skip
         if mechanism.ground in joint.links and box:
             ground = mechanism.links.index(mechanism.ground)
             reach = 2.5 * h * axes[0]
             pieces.append(
-                Piece(GROUND, (ground, ground), middle - reach, middle + reach, across, (0.1 * h, 0.1 * h), SQUARE)
+                StraightPiece(
+                    GROUND, (ground, ground), middle - reach, middle + reach, across, (0.1 * h, 0.1 * h), SQUARE
+                )
             )
         return [*pieces, slide]
     if kind == "universal":
@@ -297,12 +299,14 @@ def _symbol(
     return []
 
 
-def _ball(paint: str, body: int, middle: Array, radius: float) -> list[Piece]:
+def _ball(paint: str, body: int, middle: Array, radius: float) -> list[StraightPiece]:
     """A ball of slices whose ends are as wide as the ball is there."""
     heights = -np.cos(np.linspace(0.0, np.pi, SPHERE + 1))
     widths = radius * np.sqrt(np.clip(1.0 - heights**2, 0.0, 1.0))
     z, x = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
     return [
-        Piece(paint, (body, body), middle + radius * low * z, middle + radius * high * z, x, (float(wa), float(wb)), 16)
+        StraightPiece(
+            paint, (body, body), middle + radius * low * z, middle + radius * high * z, x, (float(wa), float(wb)), 16
+        )
         for low, high, wa, wb in zip(heights[:-1], heights[1:], widths[:-1], widths[1:], strict=True)
     ]

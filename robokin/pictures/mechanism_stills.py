@@ -6,18 +6,17 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.pictures.arm_faces import ordered
 from robokin.pictures.arm_scene import eye_axes
 from robokin.pictures.arm_stills import INK, draw_solid, label, spread_labels
 from robokin.pictures.mechanism_scene import MechanismScene, shape_faces
-from robokin.pictures.stills import FREE, drawing, written
+from robokin.pictures.workspace_stills import FREE, drawing, written
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 
 SIDE = 5.6
 """Inches of the drawing's longer side."""

@@ -5,14 +5,11 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robokin.pictures.arm_scene import axis_names, eye_axes
 from robokin.pictures.arm_text import BLOB, mark_dots, named_lines
 from robokin.pictures.mechanism_scene import MechanismScene
-from robokin.pictures.text import braille, dot_grid, framed
-
-Array = NDArray[np.float64]
+from robokin.pictures.text_pictures import braille, dot_grid, framed
 
 NAMES = 16
 """Joints that are named at most: the letters of more would cover the figure."""

@@ -11,11 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Oracle = Callable[[Array], Mask]
+from robokin.arrays import Array, Flags, Whole
+
+Oracle = Callable[[Array], Flags]
 
 CELLS = 160
 """Cells of the grid along the longer side: half a millimetre of a picture of a page's width."""
@@ -87,7 +86,7 @@ def trace(
 # The sides of the grid are numbered: 2 v is the side from point v along the first axis, 2 v + 1 along the second.
 
 
-def _segments(inside: Oracle, points: Array, mask: Mask) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _segments(inside: Oracle, points: Array, mask: Flags) -> tuple[Whole, Whole]:
     """The numbers of the sides between which the boundary runs, the set on the left: starts (s,), ends (s,)."""
     rows, columns = mask.shape
     v = np.arange(rows * columns).reshape(rows, columns)
@@ -111,7 +110,7 @@ def _segments(inside: Oracle, points: Array, mask: Mask) -> tuple[NDArray[np.int
     return np.concatenate(starts), np.concatenate(ends)
 
 
-def _crossings(inside: Oracle, points: Array, mask: Mask, sides: NDArray[np.int64], halvings: int) -> Array:
+def _crossings(inside: Oracle, points: Array, mask: Flags, sides: Whole, halvings: int) -> Array:
     """Where the boundary crosses sides of the grid: (s, 2)."""
     columns = mask.shape[1]
     i, j = np.divmod(sides // 2, columns)
@@ -145,7 +144,7 @@ def _middles(inside: Oracle, a: Array, b: Array, cell: float, halvings: int) -> 
     return found
 
 
-def _loops(crossings: Array, middles: Array, following: NDArray[np.int64]) -> list[Array]:
+def _loops(crossings: Array, middles: Array, following: Whole) -> list[Array]:
     left = np.ones(len(following), dtype=bool)
     order = following.tolist()
     loops = []

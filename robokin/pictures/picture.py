@@ -6,20 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.pictures.outline import Outline
 from robokin.units import Units
-
-Array = NDArray[np.float64]
-
 
 ON_AXIS = 0.02
 """A boundary nearer to the axis than this part of a cell is the axis itself, as well as bisection has it."""
 
 
 @dataclass(frozen=True, eq=False)
-class Degrees:
+class OrientationDegrees:
     """How freely the tool can be turned, place by place: points (c, 2) [m], squares of side `cell` [m] about them,
     fraction (c,) of the orientations; `meaning` is what stands at the colour bar."""
 
@@ -44,7 +41,7 @@ class Panel:
     free: Outline | None = None
     arms: Sequence[Array] = ()
     pose: str = ""
-    degrees: Degrees | None = None
+    degrees: OrientationDegrees | None = None
     radial: bool = False
 
     def edges(self) -> list[Array]:

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.pictures.compose import bounds_in, outline_in, rings_about, sampled
-from robokin.pictures.freedom import Freedom
+from robokin.pictures.orientation_picture import OrientationMap
 from robokin.pictures.outline import Outline
-from robokin.pictures.text import braille, dot_grid, framed, shaded
+from robokin.pictures.text_pictures import braille, dot_grid, framed, shaded
 from robokin.pictures.views import View
 from robokin.units import Units
 from robokin.workspace.membership import finitely_many
-from robokin.workspace.result import Workspace
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from robokin.workspace.workspace_result import Workspace
 
 CONFIGURATIONS = 1 << 18
 """Configurations whose positions fill the dots: some twenty-five for each."""
@@ -30,7 +27,7 @@ def plate(view: View, found: Workspace, units: Units) -> str:
 
 def shaded_plate(view: View, found: Workspace, units: Units, cores: int | None = None) -> str | None:
     """How freely the tool can be turned in a plane, from light to dark; None where there is no map."""
-    freedom = Freedom.of(view, found, cores)
+    freedom = OrientationMap.of(view, found, cores)
     if freedom is None:
         return None
     low, high = bounds_in(view)
@@ -48,7 +45,7 @@ def _page(lines: list[str], view: View, grid: Array, step: float, dots: tuple[in
     return framed(lines, corner, (dots[0] * step * scale, dots[1] * step * scale), labels)
 
 
-def _dots(view: View, found: Workspace, grid: Array, step: float) -> Mask:
+def _dots(view: View, found: Workspace, grid: Array, step: float) -> Flags:
     """(rows, columns) which dots of a grid (rows, columns, 2) [m] are in the set."""
     space, cells = view.space, found.cells
     if cells is not None and (view.radial == cells.region.radial or (not view.radial and found.space.axis is not None)):
@@ -77,7 +74,7 @@ def _dots(view: View, found: Workspace, grid: Array, step: float) -> Mask:
     return mask
 
 
-def filled(outline: Outline, grid: Array) -> Mask:
+def filled(outline: Outline, grid: Array) -> Flags:
     """(rows, columns) which points of a grid (rows, columns, 2) [m] lie within an outline: an odd number of its
     curves' sides is at their right."""
     x, rows = grid[0, :, 0], grid[:, 0, 1]

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.model import Robot
 from robokin.workspace.membership import reachable
 from robokin.workspace.space import Space, space_of
-
-Array = NDArray[np.float64]
 
 UPRIGHT = 1e-9
 """A direction whose other components are below this is along an axis of the world."""
@@ -40,7 +38,7 @@ class View:
         """(m, 3) the world's points [m] of places (m, 2) [m]."""
         return self.origin + uv[:, :1] * self.right + uv[:, 1:] * self.up
 
-    def contains(self, uv: Array) -> NDArray[np.bool_]:
+    def contains(self, uv: Array) -> Flags:
         """(m,) whether the points at places (m, 2) [m] can be reached; none is at a negative distance from an axis."""
         inside = np.zeros(len(uv), dtype=bool)
         there = np.flatnonzero(uv[:, 0] >= 0.0) if self.radial else np.arange(len(uv))

@@ -6,14 +6,13 @@ Quaternions are w, x, y, z; roll-pitch-yaw is Rz(yaw) Ry(pitch) Rx(roll); Euler 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.expected import expect_finite
 from robokin.spatial import rotations
 from robokin.spatial.rotations import DIGITS_LOST, nearest_rotation, rotation_error
-
-Array = NDArray[np.float64]
 
 LEAST = 1e-12
 """Length of an axis or a quaternion below which it says no direction."""

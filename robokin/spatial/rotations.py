@@ -7,9 +7,9 @@ that is set to zero is named in the function's docstring.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from robokin.arrays import Array
 
 SINGULAR = 1e-12
 """Below this sine (of the middle angle) a triple of angles is singular.

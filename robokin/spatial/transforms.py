@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from robokin.arrays import Array
 from robokin.spatial.rotations import rotation_from_axis_angle
-
-Array = NDArray[np.float64]
 
 FARTHEST = 1e12
 """Metres: no arm reaches that far, and the squares of what is much farther are no numbers."""

@@ -8,11 +8,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.errors import InputError, counted
-
-Array = NDArray[np.float64]
 
 ARRAY_ROWS = 8192
 """Rows of an array read at once."""

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Sequence
 from typing import Any
 
 from robokin.errors import shown
-from robokin.tables.text import Say
+from robokin.tables.text_source import Say
 
 QUOTE = '"'
 

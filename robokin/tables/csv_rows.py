@@ -11,20 +11,18 @@ from collections.abc import Iterator, Sequence
 from typing import IO, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.description.expressions import Scope, evaluate
+from robokin.arrays import Array
 from robokin.errors import ExpressionError, InputError, counted
+from robokin.formats.number_expressions import Scope, evaluate
 from robokin.tables.carried import Carried
-from robokin.tables.cells import OneDecimalSign, number_in
-from robokin.tables.columns import Wanted, factors
+from robokin.tables.csv_records import Record, RecordReader
 from robokin.tables.fast_json import pydantic_function
-from robokin.tables.headings import Found
-from robokin.tables.records import Record, RecordReader
-from robokin.tables.text import Say
+from robokin.tables.headings import FoundColumns
+from robokin.tables.number_cells import OneDecimalSign, number_in
+from robokin.tables.text_source import Say
+from robokin.tables.wanted_columns import Wanted, factors
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 NUMERALS = b"0123456789+-.eE, \t\r\n"
 """All that a block of plain numbers consists of."""
@@ -42,7 +40,7 @@ class CsvReader(RecordReader):
         """What is wanted is found when the first line is seen; cells that are not understood go to `carried`."""
         super().__init__(stream, name, say)
         self.wanted, self.carried = wanted, carried
-        self.found: Found | None = None
+        self.found: FoundColumns | None = None
         """Where in a line the wanted columns stand; None before the first line is seen."""
         self.picked: list[tuple[int, Units, bool]] = []
         """Their places, with the units of each and whether it is an angle."""

@@ -55,7 +55,7 @@ class Way:
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundColumns:
     """Where the columns of a way stand in a table, and the units of each."""
 
     way: Way
@@ -68,7 +68,7 @@ def normal(heading: str) -> str:
     return re.sub(r"[\s_.\-]+", "_", heading.strip().casefold())
 
 
-def find(ways: Sequence[Way], headings: Sequence[str], units: Units) -> Found | None:
+def find(ways: Sequence[Way], headings: Sequence[str], units: Units) -> FoundColumns | None:
     """The first of some ways whose columns are all there; as they are written comes before other spellings.
 
     Raises InputError for a column that is there twice, or whose unit cannot be that of its values, or where numbered
@@ -114,7 +114,7 @@ def _places(known: set[str], spelled: Sequence[tuple[str, str, str]]) -> list[tu
     ]
 
 
-def _only(way: Way, found: list[list[tuple[int, str]]], headings: Sequence[str], units: Units) -> Found:
+def _only(way: Way, found: list[list[tuple[int, str]]], headings: Sequence[str], units: Units) -> FoundColumns:
     """The one place of each column, and its units."""
     stated = []
     for places, kind in zip(found, way.kinds, strict=True):
@@ -135,4 +135,4 @@ def _only(way: Way, found: list[list[tuple[int, str]]], headings: Sequence[str],
         more = [h for i, h in enumerate(headings) if i not in at and re.fullmatch(way.numbered + r"_?\d+", normal(h))]
         if more:
             raise InputError(f"found the column '{shown(more[0])}', expected {way.names[0]} to {way.names[-1]} alone")
-    return Found(way, at, tuple(stated))
+    return FoundColumns(way, at, tuple(stated))

@@ -8,17 +8,15 @@ from collections.abc import Iterator, Sequence
 from typing import IO, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.errors import ExpressionError, InputError, counted, or_list, shown
 from robokin.tables.carried import Carried
-from robokin.tables.cells import number_in
-from robokin.tables.columns import Wanted
-from robokin.tables.documents import DocumentReader
-from robokin.tables.text import Say
+from robokin.tables.json_documents import DocumentReader
+from robokin.tables.number_cells import number_in
+from robokin.tables.text_source import Say
+from robokin.tables.wanted_columns import Wanted
 from robokin.units import METRES, RADIANS, Units
-
-Array = NDArray[np.float64]
 
 WRITTEN = frozenset(
     ("schema", "robot", "units", "q", "within_limits", "pose", "frames", "target", "reachable", "complete", "basis",

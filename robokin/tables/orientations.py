@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.spatial import (
     euler_from_rotation,
     quaternion_from_rotation,
@@ -19,8 +19,6 @@ from robokin.spatial import (
     rpy_from_rotation,
 )
 from robokin.units import Units
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.files import open_input
 from robokin.tables.carried import Carried
-from robokin.tables.columns import Wanted
-from robokin.tables.text import BYTE_ORDER_MARK, ROWS, Say
-
-Array = NDArray[np.float64]
+from robokin.tables.text_source import BYTE_ORDER_MARK, ROWS, Say
+from robokin.tables.wanted_columns import Wanted
 
 
 def kind_of_stream(stream: Any, name: str) -> tuple[str, Any]:

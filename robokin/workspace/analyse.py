@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_flag, expect_number, expect_whole
+from robokin.jobs.sequences import KINDS, Kind
+from robokin.jobs.stages import stage
 from robokin.model import Robot, expect_robot
 from robokin.workspace.extremes import extent
 from robokin.workspace.measure import REDUNDANT, measurable, measure, structural_length
 from robokin.workspace.membership import decided
 from robokin.workspace.orientation import SPARE, dexterity
-from robokin.workspace.result import Measure, Workspace
-from robokin.workspace.sequence import KINDS, Kind
+from robokin.workspace.sizes import Measure
 from robokin.workspace.space import space_of
-from robokin.workspace.stages import stage
+from robokin.workspace.workspace_result import Workspace
 
 SAMPLES = 1 << 17
 """Configurations that the answers are made from unless it is said otherwise."""

@@ -16,14 +16,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.inverse.analysis import Task, analysis_of
-from robokin.inverse.padding import joint_frames_of
+from robokin.inverse.elimination.padding import joint_frames_of
 from robokin.spatial import rotation_from_axis_angle, rotation_from_quaternion
 from robokin.workspace.space import PROBES, RANK, Space
 
-Array = NDArray[np.float64]
 Group = Literal["SO(2)", "S2", "SO(3)", "curve", "finite"]
 
 ALIKE = 1e-6

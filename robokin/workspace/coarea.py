@@ -24,18 +24,16 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.workspace.closed_form import closed_form_of
-from robokin.workspace.parallel import in_order
+from robokin.arrays import Array, Flags
+from robokin.jobs.ordered_map import in_order
 from robokin.workspace.placing import Placing
-from robokin.workspace.result import Measure
+from robokin.workspace.placing_joints import closed_form_of
 from robokin.workspace.sampling import moving_chain
+from robokin.workspace.sizes import Measure
 from robokin.workspace.space import PROBES, TURN, Space
 from robokin.workspace.strata import stratified
 from robokin.workspace.two_joints import two_joint_measure
-
-Array = NDArray[np.float64]
 
 ROUNDING = 1e-12
 """Rounding of an integral, as a part of it."""
@@ -212,7 +210,7 @@ def _share(space: Space, q: Array, p: Array, several: bool) -> Array:
     return share
 
 
-def _turned_otherwise(space: Space, own: Array, other: Array) -> NDArray[np.bool_]:
+def _turned_otherwise(space: Space, own: Array, other: Array) -> Flags:
     """(s,) whether configurations of the moving joints `own` and `other` (s, d) turn the tool differently.
 
     The joints that do not move the tool's origin stand still.

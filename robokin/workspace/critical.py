@@ -14,17 +14,13 @@ from functools import partial
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags, Index
+from robokin.jobs.ordered_map import in_order
 from robokin.spatial import rotation_from_axis_angle
 from robokin.workspace.attitudes import Attitudes, small_turns
-from robokin.workspace.parallel import in_order
 from robokin.workspace.space import Space
 from robokin.workspace.trials import every, reached_with, reached_with_more, table
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Index = NDArray[np.intp]
 
 STEP = {1: 0.1, 2: 0.2, 3: 0.25}
 """Step of the lattice of orientations, its radius being 1, by the ways to turn."""

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from robokin.arrays import Array, Flags
 
 FLOOR, LEAST = 1e-2, 1e-11
 """The least pivot, as a part of the distance, and what is always added to it and to the damping [1]."""

@@ -17,8 +17,8 @@ from __future__ import annotations
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags, Index
 from robokin.workspace.damped_newton import newton_step
 from robokin.workspace.extremes import extent, outermost
 from robokin.workspace.faces import edges_of, faces_of
@@ -27,9 +27,6 @@ from robokin.workspace.placing import Placing, crossed
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.space import Space
 from robokin.workspace.starts import Starts
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 REACHED = 1e-7
 """Distance, in the arm's size, at which a point is reached."""
@@ -193,7 +190,7 @@ class Descent:
     def _search(
         self,
         points: Array,
-        which: NDArray[np.intp],
+        which: Index,
         starts: Array,
         ends: list[tuple[float, int]],
         inside: Flags,
@@ -279,7 +276,7 @@ class _Pool:
         """How many searches go on."""
         return len(self.which)
 
-    def add(self, which: NDArray[np.intp], q: Array, stuck: float, steps: int) -> None:
+    def add(self, which: Index, q: Array, stuck: float, steps: int) -> None:
         """Searches for points `which` from q (n, k), until they are stuck or have made so many steps."""
         n, k = q.shape
         e, J = np.zeros((3, k)), np.zeros((n, 3, k))
@@ -294,11 +291,11 @@ class _Pool:
         if over.any():
             self._keep(np.flatnonzero(~over))
 
-    def _keep(self, keep: NDArray[np.intp]) -> None:
+    def _keep(self, keep: Index) -> None:
         self.which = self.which[keep]
         self.state = [part.take(keep, axis=-1) for part in self.state]
 
-    def advance(self) -> tuple[NDArray[np.intp], Array, Array]:
+    def advance(self) -> tuple[Index, Array, Array]:
         """A step of every search: the points of those that ended, their squared distances and their values."""
         q, tried, e, J, H, far, mu, left, stuck = self.state
         e2, J2, H2 = self.descent._model(self.points.take(self.which, axis=1), tried)

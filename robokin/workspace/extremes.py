@@ -29,15 +29,13 @@ from itertools import pairwise
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.inverse.padding import joint_frames_of
-from robokin.kinematics.chain import Chain
-from robokin.workspace.result import Extent
+from robokin.arrays import Array, Flags, Index
+from robokin.inverse.elimination.padding import joint_frames_of
+from robokin.kernel.chain import Chain
 from robokin.workspace.sampling import joint_values, moving_chain, positions
+from robokin.workspace.sizes import Extent
 from robokin.workspace.space import TURN, Space
-
-Array = NDArray[np.float64]
 
 SAMPLES = 1 << 14
 """Configurations that starts are chosen from."""
@@ -92,7 +90,7 @@ class _Goals:
         """Their gradients (m, 3) at p: (m, 3)."""
         return self.g + self.w[:, None] * (p - self.c)
 
-    def taken(self, rows: NDArray[np.intp]) -> _Goals:
+    def taken(self, rows: Index) -> _Goals:
         return _Goals(self.g[rows], self.w[rows], self.c)
 
 
@@ -103,7 +101,7 @@ class _Box:
     chain: Chain
     low: Array
     high: Array
-    full: NDArray[np.bool_]
+    full: Flags
 
 
 _kept: WeakKeyDictionary[Space, dict[int, Extent]] = WeakKeyDictionary()

@@ -18,12 +18,10 @@ from collections.abc import Sequence
 from itertools import combinations, product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.workspace.placing import Placing
 from robokin.workspace.starts import Starts
-
-Array = NDArray[np.float64]
 
 FACE, EDGE = 4096, 1024
 """Configurations in the table of a face, where one joint is held, and of an edge, where two are."""
@@ -36,7 +34,7 @@ MANY = 7
 more joints, the less is one of them in the way, and the longer the tables take."""
 
 
-def faces_of(placing: Placing, low: Array, high: Array, full: NDArray[np.bool_]) -> list[Starts]:
+def faces_of(placing: Placing, low: Array, high: Array, full: Flags) -> list[Starts]:
     """Tables of starts with one joint held; low, high, full (n,) the joint box [rad | m]."""
     chosen = np.arange(len(low))
     if len(low) > MANY:
@@ -46,7 +44,7 @@ def faces_of(placing: Placing, low: Array, high: Array, full: NDArray[np.bool_])
     return _tables(placing, (low, high), holds, FACE)
 
 
-def edges_of(placing: Placing, low: Array, high: Array, full: NDArray[np.bool_]) -> list[Starts]:
+def edges_of(placing: Placing, low: Array, high: Array, full: Flags) -> list[Starts]:
     """Tables of starts with two joints held; none for an arm of many joints."""
     n = len(low)
     if n > MANY:
@@ -56,7 +54,7 @@ def edges_of(placing: Placing, low: Array, high: Array, full: NDArray[np.bool_])
     return _tables(placing, (low, high), pairs, EDGE)
 
 
-def _held(low: Array, high: Array, full: NDArray[np.bool_], i: int, sections: int) -> list[float]:
+def _held(low: Array, high: Array, full: Flags, i: int, sections: int) -> list[float]:
     """The values at which joint i is held."""
     if full[i]:
         return [float(low[i] + (high[i] - low[i]) * (k + 0.5) / sections) for k in range(sections)]

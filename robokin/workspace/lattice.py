@@ -12,14 +12,11 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.workspace.parallel import in_order
+from robokin.arrays import Array, Flags, Index, Whole
+from robokin.jobs.ordered_map import in_order
 from robokin.workspace.region import Region
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Whole = NDArray[np.int64]
 Oracle = Callable[[Array], Flags]
 Lacks = Callable[[Array], Array]
 
@@ -62,7 +59,7 @@ def _blocks(points: Array, inside: Oracle) -> list[Array]:
     return np.array_split(points, max(len(points) // size, 1))
 
 
-class Asked:
+class CountedOracle:
     """An oracle about a region's coordinates, which counts what it is asked."""
 
     def __init__(self, inside: Oracle, region: Region, cores: int | None) -> None:
@@ -85,7 +82,7 @@ class Asked:
         return ~np.any(away, axis=1), away
 
 
-def outlined(ask: Asked, region: Region, left: int, budget: int, seed: int) -> tuple[Level, list[Settled]]:
+def outlined(ask: CountedOracle, region: Region, left: int, budget: int, seed: int) -> tuple[Level, list[Settled]]:
     """The last level, all of whose cells have the boundary within, and those settled on the way, level by level;
     left: how many points may be looked at."""
     d = len(region.low)
@@ -145,14 +142,14 @@ class Level:
             place = np.searchsorted(nodes, known[0] @ self.strides)
             self.values[place], self.away[place], self.unknown[place] = known[1], known[2], False
 
-    def look(self, ask: Asked, others: Array) -> Flags:
+    def look(self, ask: CountedOracle, others: Array) -> Flags:
         """Ask about the corners that are not known yet, and of other points (k, d) too, whose answer (k,) is given."""
         new = np.flatnonzero(self.unknown)
         values, away = ask.lacking(np.concatenate([self.at(new), others]))
         self.values[new], self.away[new], self.unknown[new] = values[: len(new)], away[: len(new)], False
         return values[len(new) :]
 
-    def at(self, nodes: NDArray[np.intp]) -> Array:
+    def at(self, nodes: Index) -> Array:
         """Coordinates (k, d) [m] of corners."""
         step = (self.region.high - self.region.low) / self.shape
         u = self.region.low + self.nodes[nodes] * step
@@ -160,7 +157,7 @@ class Level:
             u[:, 0] = np.maximum(u[:, 0], self.region.low[0] + BESIDE * step[0])
         return np.asarray(u)
 
-    def corners_of(self, which: Flags | NDArray[np.intp]) -> tuple[Array, Array]:
+    def corners_of(self, which: Flags | Index) -> tuple[Array, Array]:
         """Least and greatest coordinates (k, d) [m] of some of the cells: those of neighbours are the same."""
         step = (self.region.high - self.region.low) / self.shape
         cells = self.cells[which]
@@ -178,7 +175,7 @@ class Level:
         return np.asarray(np.any(inside, axis=1) & ~np.all(inside, axis=1))
 
     @cached_property
-    def edges(self) -> NDArray[np.intp]:
+    def edges(self) -> Index:
         """(e, 2) the edges, by their corners, whose ends disagree."""
         ends = self.of[self.cut][:, simplex_edges(len(self.shape))[0]].reshape(-1, 2)
         ends = ends[self.values[ends[:, 0]] != self.values[ends[:, 1]]]
@@ -202,7 +199,7 @@ class Level:
         kept = self.nodes[known], self.values[known], self.away[known]
         return Level(self.region, self.shape, self.cells[which], kept)
 
-    def crossings(self, ask: Asked, left: int) -> Crossings:
+    def crossings(self, ask: CountedOracle, left: int) -> Crossings:
         """Where the boundary crosses the edges whose ends disagree; left: points that may be asked about."""
         outer, start, along = self._ends()
         part, beyond = self._told(outer, start, along), start.copy()
@@ -226,14 +223,14 @@ class Level:
         keys = self.edges[:, 0] * len(self.values) + self.edges[:, 1]
         return Crossings(keys, np.where(outer == self.edges[:, 0], part, 1.0 - part), beyond)
 
-    def _ends(self) -> tuple[NDArray[np.intp], Array, Array]:
+    def _ends(self) -> tuple[Index, Array, Array]:
         """Of the edges whose ends disagree the outer ends (e,), where they are, the ways to the inner ones (e, d)."""
         inner = np.where(self.values[self.edges[:, 0]], self.edges[:, 0], self.edges[:, 1])
         outer = np.sum(self.edges, axis=1) - inner
         start = self.at(outer)
         return outer, start, self.at(inner) - start
 
-    def _told(self, outer: NDArray[np.intp], start: Array, along: Array) -> Array:
+    def _told(self, outer: Index, start: Array, along: Array) -> Array:
         """(e,) the part of each edge from its outer end `start` (e, d) that is out of the set, as the outer end's
         distance tells: the plane through the nearest point that is square to it. NaN where it does not."""
         away, ahead = self.away[outer], self.region.points(start + along) - self.region.points(start)
@@ -251,7 +248,7 @@ class Settled:
         self.low, self.high = level.corners_of(which)
         self.keys = cell_keys(level.cells[which], level.shape)
 
-    def of(self, part: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    def of(self, part: Array) -> tuple[Index, Index]:
         """Which of points, at parts (m, d) of the region's sides, are in these cells, and in which of them."""
         return looked_up(cell_keys(np.floor(part * self.shape).astype(np.int64), self.shape), self.keys)
 
@@ -261,7 +258,7 @@ def cell_keys(cells: Whole, shape: Whole) -> Whole:
     return np.asarray(np.ravel_multi_index(tuple(np.clip(cells, 0, shape - 1).T), tuple(shape)))
 
 
-def looked_up(wanted: Whole, keys: Whole) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def looked_up(wanted: Whole, keys: Whole) -> tuple[Index, Index]:
     """Which of some numbers (m,) are among others (c,), and the place of each of these there."""
     order = np.argsort(keys)
     place = np.minimum(np.searchsorted(keys, wanted, sorter=order), max(len(keys) - 1, 0))
@@ -274,7 +271,7 @@ class Crossings:
     """keys (e,) of edges, in order; part (e,) of the way from an edge's lower corner at which it leaves or enters the
     set; beyond (e, d) the nearest points to there that are known not to be in the set."""
 
-    keys: NDArray[np.intp]
+    keys: Index
     part: Array
     beyond: Array
 
@@ -284,7 +281,7 @@ def cell_corners(d: int) -> Whole:
     return np.array([[i >> axis & 1 for axis in range(d)] for i in range(1 << d)], dtype=np.int64)
 
 
-def simplex_edges(d: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def simplex_edges(d: int) -> tuple[Index, Index]:
     """(e, 2) the edges of a cell's simplices, each from corner a to corner b, a's bits being among b's; and for two
     corners in any order (2^d, 2^d) the number of their edge."""
     ends = [(a, b) for a, b in product(range(1 << d), repeat=2) if a < b and a & b == a]

@@ -17,22 +17,19 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
+from robokin.jobs.ordered_map import in_order
 from robokin.model import Robot
-from robokin.workspace.cells import RISK, Cells, cells_of, points_in, poisson_limit
 from robokin.workspace.coarea import coarea_measure
 from robokin.workspace.descent import descent_of
 from robokin.workspace.membership import Membership, decided, finitely_many, reachable
-from robokin.workspace.parallel import in_order
 from robokin.workspace.region import Region, region_of
-from robokin.workspace.result import Extent, Measure
 from robokin.workspace.sampling import moving_chain
+from robokin.workspace.size_cells import RISK, Cells, cells_of, points_in, poisson_limit
+from robokin.workspace.sizes import Extent, Measure
 from robokin.workspace.space import TURN, Space
 from robokin.workspace.witnesses import denied_share
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 DRAWINGS = 8
 """Independent drawings of those points, whose differences tell the error."""

@@ -6,15 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from robokin.workspace.closed_form import closed_form_of
+from robokin.arrays import Array, Flags, Index
 from robokin.workspace.descent import REACHED, descent_of
+from robokin.workspace.placing_joints import closed_form_of
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.space import Space
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 def reachable(space: Space, points: ArrayLike) -> Flags:
@@ -76,7 +74,7 @@ class Membership:
         return descent_of(self.space).lacks if self.space.moving and not finitely_many(self.space) else None
 
 
-def solution_count(space: Space, points: ArrayLike) -> NDArray[np.intp]:
+def solution_count(space: Space, points: ArrayLike) -> Index:
     """(m,) how many configurations of the moving joints, within limits, bring the tool's origin to each point (m, 3).
 
     Raises ValueError where more joints move the origin than the set has dimensions: there are infinitely many.

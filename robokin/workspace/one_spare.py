@@ -19,15 +19,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.workspace.closed_form import ClosedForm
+from robokin.arrays import Array, Flags
 from robokin.workspace.placing import Placing
+from robokin.workspace.placing_joints import ClosedForm
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.space import RANK, TURN, Space
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 PARALLEL = 1e-9
 """How far a unit vector may lean from another and be parallel to it."""
@@ -96,7 +93,7 @@ def one_spare_of(space: Space) -> OneSpare | None:
     return OneSpare(space, holds)
 
 
-def _box(space: Space) -> tuple[Placing, Array, Array, NDArray[np.bool_]]:
+def _box(space: Space) -> tuple[Placing, Array, Array, Flags]:
     moving = list(space.moving)
     return Placing(moving_chain(space)), space.low[moving], space.high[moving], space.full[moving]
 

@@ -20,25 +20,23 @@ from functools import partial
 from math import log
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
+from robokin.jobs.ordered_map import in_order
+from robokin.jobs.stages import stage
 from robokin.workspace.attitudes import Attitudes, Group, attitudes, group_of
-from robokin.workspace.cells import RISK, checked, split_cells
 from robokin.workspace.critical import Every, worst_beyond
 from robokin.workspace.measure import several_measure
 from robokin.workspace.membership import finitely_many
-from robokin.workspace.parallel import in_order
 from robokin.workspace.place import at_point
 from robokin.workspace.region import Region, region_of
-from robokin.workspace.result import Dexterity, Extent, Measure
+from robokin.workspace.size_cells import RISK, checked, split_cells
+from robokin.workspace.sizes import Extent, Measure
 from robokin.workspace.space import Space
-from robokin.workspace.stages import stage
 from robokin.workspace.trials import fractions, table, telling_order
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from robokin.workspace.workspace_result import Dexterity
 
 USUAL = 131072
 """Samples that the numbers below are for: places and orientations both grow with the root of the samples."""

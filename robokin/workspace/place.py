@@ -9,8 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.errors import InputError
 from robokin.inverse.analysis import Task
@@ -21,9 +22,6 @@ from robokin.workspace.attitudes import ALIKE, Attitudes, Group, attitudes, grou
 from robokin.workspace.membership import finitely_many, proven_out, reachable, solution_count
 from robokin.workspace.space import Space
 from robokin.workspace.trials import at_one_place, reached_beside, reached_by_search
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 TRIED: dict[Group, int] = {"SO(2)": 360, "S2": 1000, "SO(3)": 2000}
 """Orientations at a place that is asked about."""
@@ -36,7 +34,7 @@ BEYOND_END = 1e-2, 1e-4, 1e-6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Place(Brief):
+class WorkspacePlace(Brief):
     """What is known of one place: point (3,) [m], whether it is reachable, the group of the orientations that it
     may have and how many were tried; rotations (k, 3, 3): those of the tool that it can be reached with (of the
     sphere's group only the third column counts; where the group is "finite", one for each solution that differs).
@@ -57,13 +55,13 @@ class Place(Brief):
     proven: bool = True
 
 
-def at_point(space: Space, point: ArrayLike, orientations: int | None = None, seed: int = 0) -> Place:
+def at_point(space: Space, point: ArrayLike, orientations: int | None = None, seed: int = 0) -> WorkspacePlace:
     """Whether point (3,) [m] can be reached, with which of some orientations, and with how many configurations."""
     place = _at_point(space, point, orientations, seed)
     return place if place.reachable else replace(place, proven=bool(proven_out(space, place.point)[0]))
 
 
-def _at_point(space: Space, point: ArrayLike, orientations: int | None, seed: int) -> Place:
+def _at_point(space: Space, point: ArrayLike, orientations: int | None, seed: int) -> WorkspacePlace:
     p = np.asarray(point, dtype=np.float64)
     if p.shape != (3,) or not np.all(np.isfinite(p)):
         raise InputError("a place must be three finite numbers")
@@ -75,11 +73,11 @@ def _at_point(space: Space, point: ArrayLike, orientations: int | None, seed: in
         turned = _turned_ways(space, p) if some else []
         if not some or not space.arm.n:
             count = int(some)
-        return Place(p, some, group, 0, _different(turned), count if group == "finite" or not some else None)
+        return WorkspacePlace(p, some, group, 0, _different(turned), count if group == "finite" or not some else None)
     grid = attitudes(space, group, orientations or TRIED[group], seed)
     flags = at_one_place(space, grid, p) if some else np.zeros(len(grid.rotations), dtype=bool)
     part = float(np.mean(flags))
-    place = Place(p, some, group, len(flags), grid.rotations[flags], None if some else 0, fraction=part)
+    place = WorkspacePlace(p, some, group, len(flags), grid.rotations[flags], None if some else 0, fraction=part)
     return _with_ranges(space, grid, flags, place) if group == "SO(2)" and 0.0 < part < 1.0 else place
 
 
@@ -91,7 +89,7 @@ def _turned_ways(space: Space, p: Array) -> list[Array]:
     return [forward_kinematics(space.arm, s.q)[:3, :3] for s in found.solutions]
 
 
-def _with_ranges(space: Space, grid: Attitudes, flags: Flags, place: Place) -> Place:
+def _with_ranges(space: Space, grid: Attitudes, flags: Flags, place: WorkspacePlace) -> WorkspacePlace:
     """The place with the ranges of angles that some of a grid's, `flags` (k,), lie in."""
     assert grid.axis is not None
     axis = grid.axis * np.sign(grid.axis[np.argmax(np.abs(grid.axis))])

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.kinematics.chain import Chain
-from robokin.kinematics.columns import Constant, Plan
-
-Array = NDArray[np.float64]
+from robokin.arrays import Array
+from robokin.kernel.chain import Chain
+from robokin.kernel.columns import ChainPlan, Constant
 
 BLOCK = 2048
 """Configurations at a time: their columns stay in the second-level cache."""
@@ -22,7 +20,7 @@ class Placing:
         self.sliding = np.flatnonzero(~chain.revolute)
         self.constants = chain.constants
         # A frame is marked before each joint; behind the last the whole transform leads to the tool.
-        self.plan = Plan([[Constant(C, mark=True)] for C in chain.constants], chain.revolute, chain.offsets)
+        self.plan = ChainPlan([[Constant(C, mark=True)] for C in chain.constants], chain.revolute, chain.offsets)
 
     def placed(self, q: Array) -> tuple[Array, Array]:
         """Positions (3, m) [m] and their derivatives (n, 3, m) [m/rad | 1] at q: (n, m) [rad | m]."""

@@ -7,12 +7,10 @@ from itertools import product
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.workspace.result import Extent
+from robokin.arrays import Array
+from robokin.workspace.sizes import Extent
 from robokin.workspace.space import Space
-
-Array = NDArray[np.float64]
 
 MARGIN = 0.005
 """A region reaches beyond the extent by this part of it: that a bound was found a little short does no harm."""

@@ -13,17 +13,16 @@ from itertools import pairwise
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array
 from robokin.errors import InputError
-from robokin.kinematics.chain import Chain, exact
-from robokin.kinematics.columns import cos_sin_of_halves
+from robokin.jobs.ordered_map import in_order
+from robokin.jobs.sequences import RANDOM_BLOCK, Kind, grid_sides, unit_points
+from robokin.kernel.chain import Chain, exact
+from robokin.kernel.columns import cos_sin_of_halves
 from robokin.spatial import rotation_transform, translation_transform
-from robokin.workspace.parallel import in_order
-from robokin.workspace.sequence import RANDOM_BLOCK, Kind, grid_sides, unit_points
 from robokin.workspace.space import Space
 
-Array = NDArray[np.float64]
 Entry = Array | float
 
 BLOCK = 4096

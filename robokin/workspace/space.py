@@ -6,16 +6,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.errors import InputError
-from robokin.inverse.padding import joint_frames_of
-from robokin.kinematics.chain import Chain, chain_of, chain_size
+from robokin.inverse.elimination.padding import joint_frames_of
+from robokin.kernel.chain import Chain, chain_of, chain_size
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_transform, translation_transform
-
-Array = NDArray[np.float64]
 
 TURN = 2.0 * np.pi
 
@@ -47,7 +45,7 @@ class Space(Brief):
     chain: Chain
     low: Array
     high: Array
-    full: NDArray[np.bool_]
+    full: Flags
     moving: tuple[int, ...]
     dimension: int
     basis: Array | None
@@ -56,7 +54,7 @@ class Space(Brief):
     size: float
 
     @property
-    def held(self) -> NDArray[np.bool_]:
+    def held(self) -> Flags:
         """(n,) which joints' limits leave them one value."""
         return np.asarray(self.high - self.low <= HELD * np.where(self.robot.revolute, 1.0, self.size))
 
@@ -120,7 +118,7 @@ def _fixed(row: Joint, value: float) -> Joint:
     return replace(row, type=JointType.FIXED, d=row.d + at, offset=0.0, texts=())
 
 
-def joint_box(robot: Robot) -> tuple[Array, Array, NDArray[np.bool_]]:
+def joint_box(robot: Robot) -> tuple[Array, Array, Flags]:
     """low, high (n,) [rad | m] and which revolute joints make a whole turn. Raises InputError."""
     low, high = robot.limits[:, 0].copy(), robot.limits[:, 1].copy()
     endless = ~robot.revolute & ~(np.isfinite(low) & np.isfinite(high))

@@ -8,13 +8,10 @@ thin set of samples a dense one, and the value of the first joint follows from t
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags, Index
+from robokin.jobs.sequences import unit_points
 from robokin.workspace.placing import Placing
-from robokin.workspace.sequence import unit_points
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 KEPT = 1 << 15
 """Sampled configurations."""
@@ -91,7 +88,7 @@ class Starts:
         starts[:, 0] = self._within(value - self.offset[chosen])[0]
         return starts
 
-    def beyond(self, points: Array) -> NDArray[np.bool_]:
+    def beyond(self, points: Array) -> Flags:
         """(m,) whether points (3, m) [m] lie so far from every sample that none can be reached."""
         seen, _ = self._seen(points)
         outside = np.any((seen < self.corner[:, None] - ALONE * self.step), axis=0)
@@ -128,7 +125,7 @@ def _axis(placing: Placing) -> tuple[Array, Array]:
     return constant[:3, 3], constant[:3, :3]
 
 
-def _grown(occupied: NDArray[np.bool_], by: int) -> NDArray[np.bool_]:
+def _grown(occupied: Flags, by: int) -> Flags:
     """Cells that are occupied or at most `by` cells from one that is."""
     rows, columns = occupied.shape
     padded = np.pad(occupied, by)
@@ -139,7 +136,7 @@ def _grown(occupied: NDArray[np.bool_], by: int) -> NDArray[np.bool_]:
     return grown
 
 
-def _nearest_occupied(occupied: NDArray[np.bool_]) -> Index:
+def _nearest_occupied(occupied: Flags) -> Index:
     """For each cell of a table the number of an occupied cell near it, its own if it is occupied."""
     rows, columns = occupied.shape
     number = np.where(occupied, np.arange(rows * columns).reshape(rows, columns), -1)

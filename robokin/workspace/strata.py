@@ -16,10 +16,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from robokin.arrays import Array, Flags, Index, Whole
+
 Function = Callable[[Array], Array]
 
 COARSE, HALF = 16, 2
@@ -126,7 +125,7 @@ class _Cells:
         """(c,) how far the middle is from the corners' mean."""
         return np.asarray(np.abs(self.middle - np.mean(self.corner, axis=1)))
 
-    def taken(self, which: NDArray[np.bool_]) -> _Cells:
+    def taken(self, which: Flags) -> _Cells:
         return _Cells(*(getattr(self, name)[which] for name in self.PARTS))
 
     def joined(self, other: _Cells) -> _Cells:
@@ -209,7 +208,7 @@ def _press(cells: _Cells, new: _Cells) -> None:
         np.maximum.at(cells.pressed, which[wide], new.off[place[wide]])
 
 
-def _holding(cells: _Cells, x: Whole, y: Whole) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _holding(cells: _Cells, x: Whole, y: Whole) -> tuple[Index, Index]:
     """Which cells hold points of numbers x, y (k,), and which of the points."""
     found, places = [np.zeros(0, dtype=np.intp)], [np.zeros(0, dtype=np.intp)]
     for side in np.unique(cells.side):

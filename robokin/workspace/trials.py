@@ -5,27 +5,24 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Task, analysis_of
-from robokin.inverse.blocks import BLOCK, quick_block, solve_block
-from robokin.inverse.closing import closing_nearest, exact_within
-from robokin.inverse.padding import joint_frames_of
+from robokin.inverse.elimination.padding import joint_frames_of
+from robokin.inverse.numeric.closing import closing_nearest, exact_within
+from robokin.inverse.solve_blocks import BLOCK, quick_block, solve_block
 from robokin.inverse.verify import Found, within_limits
-from robokin.kinematics.chain import chain_of
+from robokin.jobs.ordered_map import in_order
+from robokin.kernel.chain import chain_of
 from robokin.spatial import transform
 from robokin.workspace.attitudes import Attitudes
-from robokin.workspace.parallel import in_order
 from robokin.workspace.space import Space
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 ABOUT, BESIDE = 1.7, 3
 """How far an orientation may be from a reached one to be sought from there, in the grid's spacing; from how many."""
 
 
-def reached(space: Space, tried: Attitudes, points: Array, which: NDArray[np.intp]) -> Flags:
+def reached(space: Space, tried: Attitudes, points: Array, which: Index) -> Flags:
     """(m,) whether points (m, 3) [m] are reached with the orientations `which` (m,) within the limits."""
     return reached_with(space, tried.task, points, tried.rotations[which])
 
@@ -133,7 +130,7 @@ def at_one_place(space: Space, tried: Attitudes, point: Array) -> Flags:
     return flags
 
 
-def _rolled(space: Space, tried: Attitudes, target: NDArray[np.intp], q: Array) -> Array:
+def _rolled(space: Space, tried: Attitudes, target: Index, q: Array) -> Array:
     """(m, 3, 3) the target's rotations; of those that only point somewhere that which is nearest to the tool's at q."""
     R = tried.rotations[target]
     if tried.group != "S2":
@@ -160,7 +157,7 @@ def table(space: Space, tried: Attitudes, points: Array) -> Flags:
     return flags.reshape(len(points), k)
 
 
-def every(space: Space, tried: Attitudes, order: NDArray[np.intp], points: Array) -> Flags:
+def every(space: Space, tried: Attitudes, order: Index, points: Array) -> Flags:
     """(m,) at which of points (m, 3) [m] all orientations can be reached; the first of the order decide most."""
     alive = np.arange(len(points))
     start, step = 0, 4
@@ -174,7 +171,7 @@ def every(space: Space, tried: Attitudes, order: NDArray[np.intp], points: Array
     return passed
 
 
-def _all_with_more(space: Space, tried: Attitudes, points: Array, which: NDArray[np.intp], flags: Flags) -> Flags:
+def _all_with_more(space: Space, tried: Attitudes, points: Array, which: Index, flags: Flags) -> Flags:
     """(m,) at which of points (m, 3) [m] all of some orientations are reached, of which flags (m, k) are known to be;
     of an arm with a joint to spare the first that is not is tried with more values of it before a point is given up."""
     if analysis_of(space.arm, tried.task).redundancy:
@@ -189,7 +186,7 @@ def _all_with_more(space: Space, tried: Attitudes, points: Array, which: NDArray
     return np.asarray(np.all(flags, axis=1))
 
 
-def telling_order(flags: Flags, seed: int) -> NDArray[np.intp]:
+def telling_order(flags: Flags, seed: int) -> Index:
     """(k,) orientations, first those that together rule out most of the points of a table (m, k)."""
     failed = ~flags
     left = np.any(failed, axis=1)

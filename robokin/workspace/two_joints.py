@@ -22,13 +22,11 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.workspace.result import Measure
+from robokin.arrays import Array
 from robokin.workspace.sampling import moving_chain
+from robokin.workspace.sizes import Measure
 from robokin.workspace.space import TURN, Space
-
-Array = NDArray[np.float64]
 
 ALIKE = 1e-6
 """Heights and distances [size] that differ by less under a reflection are the same: tables are printed to some five

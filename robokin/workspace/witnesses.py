@@ -12,18 +12,16 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from robokin.workspace.cells import RISK, poisson_limit
+from robokin.arrays import Array
+from robokin.jobs.ordered_map import in_order
+from robokin.jobs.sequences import unit_points
 from robokin.workspace.descent import descent_of
 from robokin.workspace.membership import Membership, reachable
-from robokin.workspace.parallel import in_order
 from robokin.workspace.region import Region
 from robokin.workspace.sampling import positions
-from robokin.workspace.sequence import unit_points
+from robokin.workspace.size_cells import RISK, poisson_limit
 from robokin.workspace.space import Space
-
-Array = NDArray[np.float64]
 
 DRAWN = 8
 """Configurations drawn for each cell."""

@@ -9,7 +9,7 @@ from functools import cache
 import pytest
 from jsonschema import Draft202012Validator
 
-from robokin.description.library import library_names
+from robokin.formats.library import library_names
 from robokin.records.schemas import CHECKS, HOMES, document_schema
 
 from .conftest import invoke

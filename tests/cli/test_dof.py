@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.mobility.verdict import mobility_of
 from robokin.model import Mechanism, Robot, WheeledBase
 
@@ -519,7 +519,7 @@ def test_a_picture_and_a_trace_at_once(call, tmp_path):
 
 
 def test_without_matplotlib_a_sentence_says_how_to_get_it(call, tmp_path, monkeypatch):
-    monkeypatch.setattr("robokin.pictures.stills.find_spec", lambda name: None)
+    monkeypatch.setattr("robokin.pictures.workspace_stills.find_spec", lambda name: None)
     refused(call("dof", "four-bar", "--plot", tmp_path / "p.png"), "matplotlib", "`pip install matplotlib`")
 
 

@@ -11,8 +11,8 @@ import pytest
 import robokin
 from robokin.cli import answers as answers_module
 from robokin.cli.answer_verdicts import verdict
-from robokin.grading.configurations import countable
-from robokin.inverse.result import Arc, Family, Result, Solution
+from robokin.grading.configuration_marks import countable
+from robokin.inverse.solutions import Arc, Family, Result, Solution
 
 KEYS = ["complete", "basis", "certificate", "counts", "families", "method"]
 """What a document says from `complete` on, in this order."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robokin.description import library_index, library_names, load_any
+from robokin.formats import library_index, library_names, load_any
 
 from .conftest import refused
 
@@ -115,7 +115,7 @@ def test_nothing_found_is_said_and_is_a_no(call):
 def test_the_index_says_what_the_descriptions_say():
     kept = library_index.library_folder() / library_index.INDEX
     assert kept.read_text(encoding="utf-8") == library_index.index_text(), (
-        "the library has changed: run python -m robokin.description.library_index"
+        "the library has changed: run python -m robokin.formats.library_index"
     )
 
 
@@ -123,7 +123,7 @@ def test_the_index_says_what_the_descriptions_say():
 def library(tmp_path, monkeypatch):
     """A small library of its own."""
     for name in ("library", "library_index"):
-        monkeypatch.setattr(f"robokin.description.{name}.library_folder", lambda: tmp_path)
+        monkeypatch.setattr(f"robokin.formats.{name}.library_folder", lambda: tmp_path)
     for name in ("scara", "four-bar", "car"):
         source = next(path for path in SOURCES if path.stem == name)
         folder = tmp_path / source.parent.name

@@ -9,8 +9,8 @@ import socket
 import pytest
 
 import robokin
-from robokin.description import library
-from robokin.description.library import load_any
+from robokin.formats import library
+from robokin.formats.library import load_any
 
 from .conftest import refused
 

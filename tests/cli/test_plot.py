@@ -136,7 +136,7 @@ def test_the_same_command_gives_the_same_bytes(call, tmp_path):
 
 
 def test_a_page_and_a_text_need_no_matplotlib(call, tmp_path, monkeypatch):
-    monkeypatch.setattr("robokin.pictures.stills.find_spec", lambda name: None)
+    monkeypatch.setattr("robokin.pictures.workspace_stills.find_spec", lambda name: None)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert call("plot", "puma560", "-o", tmp_path / "a.html").status == 0
     assert call("plot", "puma560").status == 0

@@ -445,7 +445,7 @@ LONG = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs are started without
 import robokin
-from robokin.cli import say
+from robokin.cli.statuses import say
 from robokin.cli.sample_files import write_samples
 from robokin.cli.sample_rows import Samples
 from robokin.workspace.space import space_of

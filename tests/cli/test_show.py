@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.model import Robot
 
 from .conftest import refused

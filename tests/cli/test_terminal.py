@@ -14,8 +14,8 @@ from rich.cells import cell_len
 
 from robokin.cli.output import tables
 from robokin.cli.output.tables import Table, heading, pairs, render
-from robokin.description import library_names
 from robokin.errors import visible
+from robokin.formats import library_names
 
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?![\w.])")
 STEERING = "\x1b[31m\x9b2J\x07\r\x08\u202e\u2066\u200f\x7f"

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from robokin.description import library_names
-from robokin.description.library import library_files
+from robokin.formats import library_names
+from robokin.formats.library import library_files
 
 from .conftest import refused
 

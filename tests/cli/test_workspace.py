@@ -303,7 +303,7 @@ def test_a_page_shows_a_map_of_orientations_and_the_figures(freedom):
 
 
 def test_without_matplotlib_nothing_is_worked_out_before_the_sentence(call, monkeypatch, tmp_path):
-    monkeypatch.setattr("robokin.pictures.stills.find_spec", lambda name: None)
+    monkeypatch.setattr("robokin.pictures.workspace_stills.find_spec", lambda name: None)
     path = tmp_path / "a.png"
     refused(call("workspace", "puma560", "--plot", path), "`pip install matplotlib`")
     assert not path.exists()

@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 
-from robokin.kinematics.chain import chain_of
+from robokin.kernel.chain import chain_of
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import invert, rotation_from_rpy, rotation_transform, transform, translation_transform
 

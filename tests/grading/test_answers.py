@@ -6,9 +6,16 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description import library_names, load_any
-from robokin.grading.configurations import mark_set, reached
-from robokin.grading.poses import PASS, WRONG_ORIENTATION, WRONG_POSE, WRONG_POSITION, pose_errors, pose_status
+from robokin.formats import library_names, load_any
+from robokin.grading.configuration_marks import mark_set, reached
+from robokin.grading.pose_difference import (
+    PASS,
+    WRONG_ORIENTATION,
+    WRONG_POSE,
+    WRONG_POSITION,
+    pose_errors,
+    pose_status,
+)
 from robokin.grading.tolerance import Tolerance, default_tolerance
 from robokin.model import Robot
 from robokin.spatial import rotation_from_axis_angle, rotation_from_quaternion, rotation_transform, transform

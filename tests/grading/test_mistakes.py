@@ -10,12 +10,12 @@ import pytest
 import robokin
 from robokin.cli.check_mistakes import joints_mistake, pose_mistake
 from robokin.cli.check_poses import pose_from, pose_value
-from robokin.grading.cells import wrong_cells
-from robokin.grading.configurations import reached
-from robokin.grading.poses import PASS, pose_errors, pose_status
+from robokin.grading.configuration_marks import reached
+from robokin.grading.pose_difference import PASS, pose_errors, pose_status
 from robokin.grading.same_robot import OPEN, compare_tables
 from robokin.grading.table_mistakes import table_mistake
 from robokin.grading.tolerance import default_tolerance
+from robokin.grading.wrong_cells import wrong_cells
 from robokin.units import METRES
 
 from .tables import redrawn

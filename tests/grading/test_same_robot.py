@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.grading.differences import difference_of
 from robokin.grading.same_robot import OPEN, compare_tables, match, skeleton_of
 from robokin.grading.tolerance import Tolerance, default_tolerance

@@ -8,8 +8,8 @@ import numpy as np
 from inverse.truth import Scale, least_singular_value
 
 import robokin
-from robokin.description import library_names, load_any
-from robokin.description.read import read_text
+from robokin.formats import library_names, load_any
+from robokin.formats.read import read_text
 from robokin.model import Joint, JointType, Robot
 
 RIGHT = np.pi / 2

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 import robokin
-from robokin.inverse.loop import Loop, loop_of
-from robokin.kinematics.chain import chain_of
+from robokin.inverse.elimination.loop import Loop, loop_of
+from robokin.kernel.chain import chain_of
 from robokin.spatial import invert, rotation_from_axis_angle, transform
 
 RIGHT = np.pi / 2

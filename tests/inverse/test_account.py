@@ -10,9 +10,9 @@ from inverse import arms, judge, truth
 
 import robokin
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.complex_newton import on_the_way_out
-from robokin.inverse.monodromy import two_starts
-from robokin.inverse.skew import Skew
+from robokin.inverse.elimination.complex_newton import on_the_way_out
+from robokin.inverse.elimination.monodromy import two_starts
+from robokin.inverse.elimination.skew import Skew
 
 # Rows (d [m], a [m], alpha [°]).
 FOURFOLD = arms.table(

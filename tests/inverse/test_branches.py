@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.branches import branch_names
+from robokin.inverse.solution_names import branch_names
 from robokin.inverse.solve import solve_ik, solve_many
 from robokin.inverse.verify import wrapped
-from robokin.kinematics.chain import chain_of
+from robokin.kernel.chain import chain_of
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.structure import structure_of
 from robokin.model import Joint, JointType, Robot

@@ -15,15 +15,15 @@ import robokin
 from robokin.inverse import target_block
 from robokin.inverse.analysis import analysis_of, trial_closing
 from robokin.inverse.claims import unclaimed
-from robokin.inverse.homotopy import Homotopy
-from robokin.inverse.loop import loop_of
-from robokin.inverse.monodromy import two_starts
-from robokin.inverse.null_motion import null_spaces
-from robokin.inverse.parallel import ThreeParallel
-from robokin.inverse.pose_error import error_and_jacobian
-from robokin.inverse.spherical import SphericalTriple
+from robokin.inverse.closed_form.spherical_wrist import SphericalTriple
+from robokin.inverse.closed_form.three_parallel_axes import ThreeParallel
+from robokin.inverse.elimination.homotopy import Homotopy
+from robokin.inverse.elimination.loop import loop_of
+from robokin.inverse.elimination.monodromy import two_starts
+from robokin.inverse.numeric.pose_error import error_and_jacobian
+from robokin.inverse.self_motion.null_motion import null_spaces
 from robokin.inverse.verify import Found, nothing
-from robokin.kinematics.chain import chain_of, chain_size
+from robokin.kernel.chain import chain_of, chain_size
 from robokin.model import Joint, JointType, Robot
 
 SCARAS = ("scara", "adept-one", "tp80")

@@ -7,13 +7,13 @@ import pytest
 
 import robokin
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.closest import beyond_reach, nearest_configurations
-from robokin.inverse.closing import closing_nearest
-from robokin.inverse.pose_error import error_and_jacobian
-from robokin.inverse.position_first import Ends, Ways
-from robokin.inverse.second_order import go_down, slope, solve_definite
+from robokin.inverse.numeric.closest import beyond_reach, nearest_configurations
+from robokin.inverse.numeric.closing import closing_nearest
+from robokin.inverse.numeric.pose_error import error_and_jacobian
+from robokin.inverse.numeric.position_first import DescentEnds, Ways
+from robokin.inverse.numeric.second_order import go_down, slope, solve_definite
+from robokin.inverse.numeric.turn_in_place import turned_in_place
 from robokin.inverse.solve import solve_many
-from robokin.inverse.turn_in_place import turned_in_place
 from robokin.inverse.verify import residuals
 from robokin.spatial import nearest_rotation, rotation_angle, rotation_from_axis_angle, transform
 
@@ -354,7 +354,7 @@ def test_turning_in_place_keeps_the_position_and_the_limits(rng):
         T[:, :3, :3] = turned(rng, T[:, :3, 3])[:, :3, :3]
         low, high = (robot.limits / scale[:, None]).T[..., None]
         angle = residuals(T, robokin.forward_kinematics(robot, q))[1]
-        before = Ends((q / scale).T, np.zeros(len(q)), angle)
+        before = DescentEnds((q / scale).T, np.zeros(len(q)), angle)
         after = turned_in_place(Ways(analysis.chain, analysis.size, low, high), columns(T), before)
         position, left = residuals(T, robokin.forward_kinematics(robot, after.x.T * scale))
         assert np.max(position) <= 1e-10 * analysis.size

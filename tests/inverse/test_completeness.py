@@ -9,7 +9,7 @@ from inverse.judge import differ, differs_alone, faults, listed, on_arc, shaken,
 from inverse.truth import REGULAR, Scale, errors, least_singular_value, search
 
 import robokin
-from robokin.inverse.result import Arc, Family, Result, Solution
+from robokin.inverse.solutions import Arc, Family, Result, Solution
 
 
 def laws_broken(robot, q, rng, searched):

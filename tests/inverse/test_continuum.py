@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import robokin
+from robokin.inverse.self_motion.spread import well_spread
 from robokin.inverse.solve import solve_many
-from robokin.inverse.spread import well_spread
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import transform
 

@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.inverse import fourteen
-from robokin.inverse.elimination import (
+from robokin.inverse.elimination import fourteen_functions as fourteen
+from robokin.inverse.elimination.loop import loop_of
+from robokin.inverse.elimination.loop_newton import closing_at, determinants, joint_motion, refine
+from robokin.inverse.elimination.splits import (
     SPLITS,
     Elimination,
     choose_splits,
@@ -19,10 +21,8 @@ from robokin.inverse.elimination import (
     generic_count,
     rescue_candidates,
 )
-from robokin.inverse.loop import loop_of
-from robokin.inverse.newton import closing_at, determinants, joint_motion, refine
-from robokin.kinematics.chain import Chain, chain_of
-from robokin.kinematics.dh import standard_dh
+from robokin.kernel.chain import Chain, chain_of
+from robokin.kernel.dh import standard_dh
 from robokin.spatial import nearest_rotation, rotation_from_rpy, transform
 
 EXAMPLES = json.loads((Path(__file__).parent.parent / "data" / "six_r_examples.json").read_text())

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.inverse.fold import to_fold
-from robokin.inverse.loop import chain_size
-from robokin.inverse.self_motion import classify
-from robokin.kinematics.chain import chain_of
+from robokin.inverse.elimination.loop import chain_size
+from robokin.inverse.self_motion.fold import to_fold
+from robokin.inverse.self_motion.singular_solutions import classify
+from robokin.kernel.chain import chain_of
 from robokin.spatial import rotation_transform
 
 STRETCHED = float(np.arctan2(433.07, -20.32))  # the PUMA's elbow: a3 = -20.32 mm, d4 = 433.07 mm

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description.read import read_text
 from robokin.errors import InputError
+from robokin.formats.read import read_text
 from robokin.inverse.full_turns import MOST_TURNS, count_equivalents, equivalents, turns_of_limits, with_full_turns
-from robokin.inverse.result import BatchResult, Family, Result, Solution
+from robokin.inverse.solutions import BatchResult, Family, Result, Solution
 
 UR5E = np.radians([20.0, -70.0, 100.0, -60.0, 50.0, 10.0])
 """A generic configuration of the UR5e, whose elbow has ±180° and whose other joints ±360°: 2⁵ equivalents."""

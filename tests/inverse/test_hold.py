@@ -11,7 +11,7 @@ import pytest
 import robokin
 from robokin.errors import InputError
 from robokin.inverse.hold import KEPT, held_arm, with_held_joints
-from robokin.inverse.result import Arc, BatchResult, Family, Result, Solution
+from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution
 from robokin.inverse.verify import wrapped
 
 ROBOTS = ["panda", "iiwa14", "puma560", "stanford", "scara", "scara-frames", "puma560-craig", "planar3r"]

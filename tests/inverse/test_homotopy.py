@@ -12,14 +12,14 @@ from inverse.loops import closing_of, gaps, named, random_links, with_types
 
 import robokin
 from robokin.inverse.analysis import General, analysis_of
-from robokin.inverse.complex_newton import complex_refine, distinct, regular, regular_and_distinct
-from robokin.inverse.homotopy import Homotopy
-from robokin.inverse.loop import Loop, loop_of
-from robokin.inverse.newton import refine
-from robokin.inverse.paths import points_at, points_of
+from robokin.inverse.elimination.complex_newton import complex_refine, distinct, regular, regular_and_distinct
+from robokin.inverse.elimination.homotopy import Homotopy
+from robokin.inverse.elimination.homotopy_paths import points_at, points_of
+from robokin.inverse.elimination.loop import Loop, loop_of
+from robokin.inverse.elimination.loop_newton import refine
+from robokin.inverse.elimination.starts_close_by import CloseBy
 from robokin.inverse.second_look import known_solutions
-from robokin.inverse.starts_close_by import CloseBy
-from robokin.kinematics.chain import Chain, standard_dh
+from robokin.kernel.chain import Chain, standard_dh
 from robokin.spatial import nearest_rotation
 
 EXAMPLES = json.loads((Path(__file__).parent.parent / "data" / "six_r_examples.json").read_text())

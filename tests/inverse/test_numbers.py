@@ -10,8 +10,8 @@ import pytest
 import robokin
 from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.blocks import turned_in_the_open
 from robokin.inverse.solve import solve_many
+from robokin.inverse.solve_blocks import turned_in_the_open
 from robokin.inverse.window import solve_window
 from robokin.kinematics.forward import forward_kinematics
 from robokin.model import Joint, JointType, Robot

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from inverse.loops import named, outcome, parallel_loop, right_angles, singular_values_of, values_of, with_types
 
-from robokin.inverse.parallel import ThreeParallel
+from robokin.inverse.closed_form.three_parallel_axes import ThreeParallel
 
 TYPES = ["RRR", "RRP", "RPR", "PRR"]
 ARMS = ["ur3", "ur5e", "ur10", "ur20"]

@@ -9,7 +9,7 @@ import pytest
 
 import robokin
 from robokin.errors import InputError
-from robokin.inverse.path import time_law
+from robokin.inverse.joint_paths import time_law
 from robokin.spatial import axis_angle_from_rotation, transform
 
 ARMS = {

@@ -7,13 +7,13 @@ import pytest
 from inverse.arms import OFFSET_WRIST, SPHERICAL_WRIST
 
 import robokin
-from robokin.inverse.arcs import arcs_within
-from robokin.inverse.loop import chain_size
-from robokin.inverse.nearest_member import nearest_on
-from robokin.inverse.pose_error import error_and_jacobian
-from robokin.inverse.self_motion import classify, trace
-from robokin.inverse.solution_sets import families, on_curve
-from robokin.kinematics.chain import chain_of
+from robokin.inverse.elimination.loop import chain_size
+from robokin.inverse.numeric.pose_error import error_and_jacobian
+from robokin.inverse.self_motion.arcs import arcs_within
+from robokin.inverse.self_motion.nearest_member import nearest_on
+from robokin.inverse.self_motion.singular_solutions import classify, trace
+from robokin.inverse.self_motion.solution_sets import families, on_curve
+from robokin.kernel.chain import chain_of
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_from_axis_angle
 

@@ -7,13 +7,13 @@ import pytest
 
 import robokin
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.blocks import rows_of
-from robokin.inverse.elimination import Elimination, elimination_of
-from robokin.inverse.fold import to_multiple_roots
-from robokin.inverse.neighbours import next_door
-from robokin.inverse.null_motion import ZERO, least_squares
-from robokin.inverse.numeric import descend
+from robokin.inverse.elimination.neighbours import next_door
+from robokin.inverse.elimination.splits import Elimination, elimination_of
+from robokin.inverse.numeric.least_squares import descend
 from robokin.inverse.second_look import look_again
+from robokin.inverse.self_motion.fold import to_multiple_roots
+from robokin.inverse.self_motion.null_motion import ZERO, least_squares
+from robokin.inverse.solve_blocks import rows_of
 from robokin.inverse.verify import nothing
 from robokin.inverse.window import least_singular_values, nearly_singular
 
@@ -75,7 +75,7 @@ def test_what_is_counted_next_door_is_what_all_ways_find(name, rng, monkeypatch)
     rest = np.zeros(6)
     counted, claims = look_again(analysis, T, nothing(6), rest, ANYWHERE, None)
     assert set(claims.basis.tolist()) == {1}
-    monkeypatch.setattr("robokin.inverse.neighbours.COUNTED_AT", 0)
+    monkeypatch.setattr("robokin.inverse.elimination.neighbours.COUNTED_AT", 0)
     followed, claims = look_again(analysis, T, nothing(6), rest, ANYWHERE, None)
     assert set(claims.basis.tolist()) == {2}
     assert np.array_equal(counted.index, followed.index)
@@ -90,7 +90,7 @@ def test_multiple_roots_of_many_are_those_of_each(rng, monkeypatch):
         calls.append((told, to_multiple_roots(*told)))
         return calls[-1][1]
 
-    monkeypatch.setattr("robokin.inverse.self_motion.to_multiple_roots", recorded)
+    monkeypatch.setattr("robokin.inverse.self_motion.singular_solutions.to_multiple_roots", recorded)
     robokin.solve_ik(robot, round_poses(robot, rng, 24, 90)[1])
     assert any(found.any() for _, (_, found) in calls)
     for (chain, T, q, size, null), (roots, found) in calls:

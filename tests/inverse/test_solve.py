@@ -9,8 +9,8 @@ import pytest
 from conftest import data
 
 import robokin
-from robokin.description import library_names, load_any
 from robokin.errors import InputError
+from robokin.formats import library_names, load_any
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.joint_axes import nearest_point
 from robokin.inverse.solve import solve_many

@@ -19,11 +19,11 @@ from inverse.loops import (
     values_of,
 )
 
-from robokin.inverse.axes import meeting_point
-from robokin.inverse.loop import loop_of
-from robokin.inverse.spherical import SphericalTriple
-from robokin.kinematics.chain import Chain
-from robokin.kinematics.dh import standard_dh
+from robokin.inverse.closed_form.loop_axes import meeting_point
+from robokin.inverse.closed_form.spherical_wrist import SphericalTriple
+from robokin.inverse.elimination.loop import loop_of
+from robokin.kernel.chain import Chain
+from robokin.kernel.dh import standard_dh
 from robokin.spatial import invert
 
 TYPES = ["".join(letters) for letters in itertools.product("RP", repeat=3)]

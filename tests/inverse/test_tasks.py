@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.padding import joint_frames_of
-from robokin.inverse.pose_error import error_and_jacobian
+from robokin.inverse.elimination.padding import joint_frames_of
+from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.solve import TASKS, solve_many
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_from_axis_angle, rotation_from_rpy

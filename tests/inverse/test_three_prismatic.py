@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from inverse.loops import outcome, random_links, regular, right_angles, values_of
 
-from robokin.inverse.loop import Loop
-from robokin.inverse.three_prismatic import ThreePrismatic
+from robokin.inverse.closed_form.three_prismatic import ThreePrismatic
+from robokin.inverse.elimination.loop import Loop
 
 ORDERS = list(itertools.combinations(range(6), 3))
 

@@ -8,9 +8,9 @@ from kinematics.chains import random_chain
 from kinematics.reference import forward, frames
 
 import robokin
-from robokin.description import library_names, load_any
 from robokin.errors import InputError
-from robokin.kinematics.columns import BLOCK, cos_sin_of_halves
+from robokin.formats import library_names, load_any
+from robokin.kernel.columns import BLOCK, cos_sin_of_halves
 from robokin.kinematics.forward import joint_frames, row_frames
 from robokin.model import Joint, JointType, Robot
 

@@ -7,8 +7,8 @@ import pytest
 from kinematics.chains import random_chain
 
 import robokin
-from robokin.description import library_names, load_any
 from robokin.errors import InputError
+from robokin.formats import library_names, load_any
 from robokin.model import Robot
 
 ROBOTS = [name for name in library_names() if isinstance(load_any(name), Robot)]

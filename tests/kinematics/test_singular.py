@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.inverse.analysis import analysis_of
 from robokin.kinematics.velocity import motion_task
 from robokin.model import Robot

@@ -9,8 +9,8 @@ import pytest
 from mobility.linkages import unit
 
 import robokin
-from robokin.description import read_text
 from robokin.errors import InputError
+from robokin.formats import read_text
 from robokin.mobility.trace import trace
 from robokin.mobility.verdict import mobility_of
 from robokin.model import Mechanism, MechanismJoint

@@ -10,7 +10,7 @@ from mobility import known
 from mobility.linkages import bennett, four_bar, linkage
 from mobility.test_library import anywhere
 
-from robokin.description.library import load_any
+from robokin.formats.library import load_any
 from robokin.mobility.verdict import mobility_of
 from robokin.model import Mechanism, MechanismJoint
 

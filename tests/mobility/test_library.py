@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description import library_names, load_any
+from robokin.formats import library_names, load_any
 from robokin.mobility.assembly import CONTACTS
 from robokin.mobility.count import grubler, grubler_by_constraints
-from robokin.mobility.mobility import kernel_at
+from robokin.mobility.true_mobility import kernel_at
 from robokin.mobility.verdict import Mobility, mobility_of
 from robokin.model import Mechanism
 

@@ -9,9 +9,9 @@ from mobility.linkages import bennett, chain_of_four_bars, four_bar, generic_loo
 from robokin.errors import InputError
 from robokin.mobility.assembly import assembled, missing_geometry, parts_of, size_of, space_fault
 from robokin.mobility.linkage import CLOSED
-from robokin.mobility.mobility import kernel_at
 from robokin.mobility.screws import logarithm
 from robokin.mobility.slips import slips_of
+from robokin.mobility.true_mobility import kernel_at
 from robokin.mobility.verdict import mobility_of
 from robokin.spatial import invert
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description import library_names, load_any
-from robokin.mobility.wheel_rows import Frame, kernel_of, sliding_row
-from robokin.mobility.wheeled import manoeuvrability_of
+from robokin.formats import library_names, load_any
+from robokin.mobility.manoeuvrability import manoeuvrability_of
+from robokin.mobility.wheel_rows import WheelFrame, kernel_of, sliding_row
 from robokin.model import Wheel, WheeledBase
 
 BASES = [name for name in library_names() if isinstance(load_any(name), WheeledBase)]
@@ -27,7 +27,7 @@ DEGREES = {
 # it likes; all others are driven in whatever they can do.
 COMMANDED = {name: (1, 1) if name == "one-steer" else degrees[:2] for name, degrees in DEGREES.items()}
 
-HERE = Frame(0.0, 0.0, 1.0)
+HERE = WheelFrame(0.0, 0.0, 1.0)
 
 
 def wheel(kind, x, y, degrees=0.0, motors="", offset=0.0, roller=90.0):

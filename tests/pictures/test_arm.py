@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description.library import library_names, load_any
+from robokin.formats.library import library_names, load_any
 from robokin.kinematics.forward import joint_frames, row_frames
 from robokin.model import Robot
 from robokin.pictures.arm import arm_of, body_frames, default_configuration, ends_of, line_of, plane_of

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description.library import library_names, load_any
+from robokin.formats.library import library_names, load_any
 from robokin.model import Robot
 from robokin.pictures.arm import arm_of, default_configuration
 from robokin.pictures.arm_page import arm_page

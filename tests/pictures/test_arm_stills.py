@@ -60,6 +60,6 @@ def test_ghosts_are_named_and_the_target_is_shown(turned):
 
 
 def test_without_matplotlib_the_sentence_says_how_to_get_it(monkeypatch):
-    monkeypatch.setattr("robokin.pictures.stills.find_spec", lambda name: None)
+    monkeypatch.setattr("robokin.pictures.workspace_stills.find_spec", lambda name: None)
     with pytest.raises(InputError, match="`pip install matplotlib`"):
         arm_still(scene("puma560"), "png")

@@ -13,9 +13,9 @@ import pytest
 
 from robokin.errors import InputError
 from robokin.pictures.outline import trace
-from robokin.pictures.page import STEPS, page
-from robokin.pictures.picture import Cloud, Degrees, Panel, Picture
-from robokin.pictures.stills import still
+from robokin.pictures.picture import Cloud, OrientationDegrees, Panel, Picture
+from robokin.pictures.workspace_page import STEPS, page
+from robokin.pictures.workspace_stills import still
 from robokin.units import Units
 
 from .browser import evaluate, needs_browser
@@ -30,7 +30,7 @@ def picture():
     part = trace(lambda p: (np.hypot(*p.T) < 0.9) & (p[:, 0] > 0.0), *BOX, cells=40)
     arm = np.array([[0.0, 0.0], [0.5, 0.3], [0.8, 0.2]])
     places = rng.uniform(-0.6, 0.6, (50, 2))
-    degrees = Degrees(places, np.hypot(*places.T), 0.1, "part of the angles that can be reached")
+    degrees = OrientationDegrees(places, np.hypot(*places.T), 0.1, "part of the angles that can be reached")
     panels = [
         Panel("section", ("r", "z"), part, disc, [arm], "home", radial=True),
         Panel("slice at z = 0 mm", ("x", "y"), disc, degrees=degrees),
@@ -83,7 +83,7 @@ def test_a_picture_does_not_take_on_the_users_settings(picture, svg, matplotlib)
 
 
 def test_without_matplotlib_the_sentence_says_how_to_get_it(picture, monkeypatch):
-    monkeypatch.setattr("robokin.pictures.stills.find_spec", lambda name: None)
+    monkeypatch.setattr("robokin.pictures.workspace_stills.find_spec", lambda name: None)
     with pytest.raises(InputError, match="`pip install matplotlib`"):
         still(picture, "png")
 

@@ -8,7 +8,7 @@ import pytest
 from robokin.pictures.outline import trace
 from robokin.pictures.picture import round_steps
 from robokin.pictures.plate import filled
-from robokin.pictures.text import HEIGHT, SHADES, braille, dot_grid, framed, shaded
+from robokin.pictures.text_pictures import HEIGHT, SHADES, braille, dot_grid, framed, shaded
 
 
 def test_every_dot_has_its_place():

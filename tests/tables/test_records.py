@@ -9,8 +9,8 @@ import random
 import pytest
 
 from robokin.errors import InputError
-from robokin.tables.records import RecordReader, separator_of
-from robokin.tables.text import MAX_ROW
+from robokin.tables.csv_records import RecordReader, separator_of
+from robokin.tables.text_source import MAX_ROW
 
 
 class Pieces:

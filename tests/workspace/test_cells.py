@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from robokin.workspace.cells import cells_of, checked, poisson_limit, split_cells
 from robokin.workspace.region import Region
-from robokin.workspace.result import Measure
+from robokin.workspace.size_cells import cells_of, checked, poisson_limit, split_cells
+from robokin.workspace.sizes import Measure
 
 Array = NDArray[np.float64]
 Oracle = Callable[[Array], NDArray[np.bool_]]

@@ -12,16 +12,16 @@ from workspace.spare_arms import KINDS, drawn_arm, sampled
 from workspace.spare_sizes import FAMILIES, spare_arm
 
 import robokin
-from robokin.inverse.padding import joint_frames_of
+from robokin.inverse.elimination.padding import joint_frames_of
 from robokin.model import Joint, JointType, Robot
 from robokin.workspace.attitudes import attitudes, group_of
-from robokin.workspace.closed_form import ClosedForm
 from robokin.workspace.descent import descent_of
 from robokin.workspace.extremes import extent
 from robokin.workspace.measure import measure
 from robokin.workspace.membership import decided, proven_out, reachable
 from robokin.workspace.one_spare import one_spare_of
 from robokin.workspace.place import at_point
+from robokin.workspace.placing_joints import ClosedForm
 from robokin.workspace.region import region_of
 from robokin.workspace.sampling import positions
 from robokin.workspace.space import space_of

@@ -16,9 +16,10 @@ from robokin.workspace.critical import Every, worst_beyond
 from robokin.workspace.extremes import extent
 from robokin.workspace.orientation import dexterity
 from robokin.workspace.place import at_point
-from robokin.workspace.result import Dexterity, Measure
+from robokin.workspace.sizes import Measure
 from robokin.workspace.space import Space, space_of
 from robokin.workspace.trials import every, fractions, reached, table, telling_order
+from robokin.workspace.workspace_result import Dexterity
 
 FEW = 4096
 """Samples that are enough for a bound of some per cent."""

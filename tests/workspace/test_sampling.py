@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.description import library_names, load_any
 from robokin.errors import InputError
+from robokin.formats import library_names, load_any
+from robokin.jobs.sequences import KINDS
 from robokin.model import Joint, JointType, Robot
 from robokin.workspace import sampling
 from robokin.workspace.sampling import joint_values, moving_chain, positions, sample_blocks, sample_count
-from robokin.workspace.sequence import KINDS
 from robokin.workspace.space import space_of
 
 ARMS = ["puma560", "planar3r", "scara", "stanford", "thumb", "panda", "cylindrical", "spherical-wrist", "kr5-arc"]

@@ -68,7 +68,7 @@ class CheckGroup(TyperGroup):
         if cmd_name in CHECKS:
             from robokin.cli.app import build
 
-            module = import_module(f"robokin.cli.commands.check_{cmd_name}")
+            module = import_module(f"robokin.cli.commands.check_{cmd_name}_command")
             command = build(cmd_name, module.command)
             if hasattr(module, "arguments"):
                 parse = command.parse_args

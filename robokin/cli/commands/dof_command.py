@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robokin.cli import DONE
 from robokin.cli.completion import robots, words
 from robokin.cli.options import (
     AngleOption,
@@ -20,6 +19,7 @@ from robokin.cli.options import (
     output_format,
     parameter_overrides,
 )
+from robokin.cli.statuses import DONE
 from robokin.errors import InputError, or_list, shown
 
 if TYPE_CHECKING:
@@ -216,7 +216,7 @@ def _described(
 
         return _written(robot_record(entry, units), kind)
     from robokin.cli.mobilities import wheeled_record
-    from robokin.mobility.wheeled import manoeuvrability_of
+    from robokin.mobility.manoeuvrability import manoeuvrability_of
 
     return _written(wheeled_record(entry, manoeuvrability_of(entry), units), kind)
 
@@ -236,7 +236,7 @@ def _mechanism(mechanism: Mechanism, units: Units, kind: str, motion: dict[str, 
 
         check_drawable(mechanism, plot, "--plot")
     if steps is not None or plot is not None:
-        from robokin.cli.motions import Motion, parse_point
+        from robokin.cli.motions import MotionRows, parse_point
 
         points = [parse_point(text, mechanism, units) for text in motion["--point"] or []]
         wanted = bool(steps is not None or points or motion["--drive"])
@@ -244,7 +244,7 @@ def _mechanism(mechanism: Mechanism, units: Units, kind: str, motion: dict[str, 
         if plot is not None:
             _plot(plot, mechanism, moved, points, units)
         if steps is not None and moved is not None:
-            return Motion(moved, points, units).written(kind)
+            return MotionRows(moved, points, units).written(kind)
     found = mobility_of(mechanism, _pair(motion["--between"]), seed)
     return _written(mechanism_record(found, units, seed), kind)
 

@@ -26,15 +26,11 @@ from robokin.cli.options import (
 )
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from robokin.cli.poses import Poses
+    from robokin.arrays import Array
+    from robokin.cli.records import PoseBlock
     from robokin.model import Robot
     from robokin.tables.carried import Carried
     from robokin.units import Units
-
-    Array = NDArray[np.float64]
 
 
 def command(
@@ -85,10 +81,10 @@ def command(
         shuf -n 3 joints.csv | robokin fk puma560 --q - -f csv
         robokin fk anthropomorphic --symbolic
     """
-    from robokin.cli import say
     from robokin.cli.arguments import load_robot, parse_configuration
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.poses import PoseMaker
+    from robokin.cli.statuses import say
     from robokin.tables.carried import Carried
 
     if symbolic or latex or python or numbers:
@@ -181,7 +177,7 @@ class _Writer:
     alone: bool
     carried: Carried
 
-    def write(self, kind: str, answers: Iterable[Poses], stream: IO[bytes]) -> Iterator[bytes]:
+    def write(self, kind: str, answers: Iterable[PoseBlock], stream: IO[bytes]) -> Iterator[bytes]:
         """The answers in a format, piece by piece; arrays go to the stream themselves."""
         if kind == "npy":
             self.npy(answers, stream)
@@ -190,7 +186,7 @@ class _Writer:
             return self.one(kind, next(iter(answers)))
         return {"csv": self.csv, "jsonl": self.jsonl, "json": self.json, "table": self.table}[kind](answers)
 
-    def one(self, kind: str, poses: Poses) -> Iterator[bytes]:
+    def one(self, kind: str, poses: PoseBlock) -> Iterator[bytes]:
         if kind == "json":
             from robokin.cli.output.text import json_document
 
@@ -200,7 +196,7 @@ class _Writer:
 
             yield render(*self.page(poses))
 
-    def csv(self, answers: Iterable[Poses]) -> Iterator[bytes]:
+    def csv(self, answers: Iterable[PoseBlock]) -> Iterator[bytes]:
         import numpy as np
 
         from robokin.cli.output.text import csv_header, csv_rows
@@ -216,19 +212,19 @@ class _Writer:
         if not begun:
             yield self.carried.before(csv_header(columns), b"")
 
-    def jsonl(self, answers: Iterable[Poses]) -> Iterator[bytes]:
+    def jsonl(self, answers: Iterable[PoseBlock]) -> Iterator[bytes]:
         from robokin.cli.output.text import json_line
 
         for poses in answers:
             yield b"".join(json_line(record) for record in self.records(poses))
 
-    def json(self, answers: Iterable[Poses]) -> Iterator[bytes]:
+    def json(self, answers: Iterable[PoseBlock]) -> Iterator[bytes]:
         from robokin.cli.output.text import json_list
 
         return json_list(self.records(poses) for poses in answers)
 
-    def npy(self, answers: Iterable[Poses], stream: IO[bytes]) -> None:
-        from robokin.cli.output.arrays import ArrayWriter
+    def npy(self, answers: Iterable[PoseBlock], stream: IO[bytes]) -> None:
+        from robokin.cli.output.array_files import ArrayWriter
         from robokin.tables.orientations import pose_columns, pose_table
 
         kind = self.orientation or "matrix"
@@ -242,8 +238,8 @@ class _Writer:
             writer.write(block)
         (writer or ArrayWriter(stream, shape)).close()
 
-    def table(self, answers: Iterable[Poses]) -> Iterator[bytes]:
-        from robokin.cli.output.columns import NumberColumns
+    def table(self, answers: Iterable[PoseBlock]) -> Iterator[bytes]:
+        from robokin.cli.output.number_columns import NumberColumns
         from robokin.cli.output.text import page
         from robokin.tables.orientations import pose_columns, pose_table
 
@@ -263,7 +259,7 @@ class _Writer:
             yield page(f"{head}{columns.heading if head else ''}{lines}")
             head = ""
 
-    def matrices(self, poses: Poses, numbers: Iterable[int]) -> tuple[list[tuple[object, str, str]], Array]:
+    def matrices(self, poses: PoseBlock, numbers: Iterable[int]) -> tuple[list[tuple[object, str, str]], Array]:
         """Three lines for each matrix of a block, with their labels."""
         import numpy as np
 
@@ -278,7 +274,7 @@ class _Writer:
         ]
         return labels, all_frames[:, :, :3].reshape(-1, 4)
 
-    def records(self, poses: Poses) -> Iterator[dict[str, Any]]:
+    def records(self, poses: PoseBlock) -> Iterator[dict[str, Any]]:
         """The JSON documents of a block."""
         from robokin.cli.records import configuration_records
 
@@ -286,7 +282,7 @@ class _Writer:
         for record in configuration_records(self.robot, self.units, poses, more):
             yield self.carried.in_front_of(record)
 
-    def page(self, poses: Poses) -> list[Any]:
+    def page(self, poses: PoseBlock) -> list[Any]:
         """All that can be said of one pose, for eyes."""
         from robokin.cli.output.numbers import show
         from robokin.cli.output.tables import heading, number_table, pairs

@@ -56,14 +56,14 @@ def command(
     """
     import numpy as np
 
-    from robokin.cli import say
     from robokin.cli.arguments import parse_numbers
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.output.text import csv_header, csv_rows, json_document, json_line
     from robokin.cli.records import frame_record, poses_in
-    from robokin.description.expressions import Scope
-    from robokin.description.transforms import evaluate_transform
+    from robokin.cli.statuses import say
     from robokin.errors import ExpressionError, InputError
+    from robokin.formats.number_expressions import Scope
+    from robokin.formats.transform_expressions import evaluate_transform
     from robokin.records.envelope import envelope
     from robokin.spatial import invert, map_point
     from robokin.tables.orientations import pose_columns, pose_table

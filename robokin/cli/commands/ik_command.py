@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robokin.cli import DONE, NO
 from robokin.cli.completion import named_poses, words
 from robokin.cli.options import (
     AngleOption,
@@ -24,6 +23,7 @@ from robokin.cli.options import (
     output_format,
     parameter_overrides,
 )
+from robokin.cli.statuses import DONE, NO
 from robokin.cli.target_options import (
     ApproachOption,
     EulerOption,
@@ -38,12 +38,9 @@ from robokin.cli.target_options import (
 )
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from robokin.arrays import Array
     from robokin.units import Units
 
-    Array = NDArray[np.float64]
 
 METHODS = ("auto", "analytic", "numeric")
 
@@ -164,16 +161,16 @@ def command(
     """
     from itertools import chain
 
-    from robokin.cli import say
     from robokin.cli.answers import RECORD_KEYS, Answers, csv_columns
     from robokin.cli.arguments import joint_factors, load_robot, parse_configuration
     from robokin.cli.held_joints import parse_hold
     from robokin.cli.output.numbers import counted
     from robokin.cli.output.sink import format_of, sink
+    from robokin.cli.statuses import say
     from robokin.cli.targets import parse_target
     from robokin.errors import InputError
     from robokin.tables.carried import Carried
-    from robokin.tables.targets import Targets
+    from robokin.tables.target_rows import Targets
 
     kind = format_of(output, output_format(format, json), arrays=True)
     model = load_robot(robot, parameter_overrides(set_))
@@ -216,7 +213,7 @@ def command(
         arguments["task"] = target.task
         blocks: Iterable[Array] = iter([target.T[None]])
         if explain:
-            from robokin.lessons.explain import require_lesson
+            from robokin.derivation.explain import require_lesson
 
             require_lesson(model, arguments["task"])
     else:

@@ -89,11 +89,11 @@ def command(
         robokin jacobian planar2r --q 30,60 --task position
         robokin jacobian puma560 --input joints.csv --output jacobians.npy
     """
-    from robokin.cli import say
     from robokin.cli.arguments import load_robot
     from robokin.cli.configurations import configurations
     from robokin.cli.jacobians import Jacobians, taken_by
     from robokin.cli.output.sink import format_of, sink
+    from robokin.cli.statuses import say
     from robokin.tables.carried import Carried
 
     kind = format_of(output, output_format(format, json), arrays=True)

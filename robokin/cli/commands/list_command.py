@@ -35,11 +35,11 @@ def command(
         robokin list mechanism --json
         robokin list wheeled
     """
-    from robokin.cli import DONE, NO, say
     from robokin.cli.library_search import found, nothing_found
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.output.text import csv_records, json_document, json_line
-    from robokin.description.library_index import library_entries
+    from robokin.cli.statuses import DONE, NO, say
+    from robokin.formats.library_index import library_entries
     from robokin.records.envelope import SCHEMA
 
     kind = format_of(output, output_format(format, json))

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robokin.cli import DONE, NO
 from robokin.cli.completion import named_poses, words
 from robokin.cli.options import (
     AngleOption,
@@ -21,6 +20,7 @@ from robokin.cli.options import (
     output_format,
     parameter_overrides,
 )
+from robokin.cli.statuses import DONE, NO
 from robokin.cli.target_options import (
     ApproachOption,
     EulerOption,
@@ -35,14 +35,11 @@ from robokin.cli.target_options import (
 )
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from robokin.inverse.path import Path
+    from robokin.arrays import Array
+    from robokin.inverse.joint_paths import Path
     from robokin.model import Robot
     from robokin.units import Units
 
-    Array = NDArray[np.float64]
 
 TASKS = ("pose", "position")
 
@@ -111,10 +108,10 @@ def command(
         robokin path planar3r --from 10,40,20 --xy 0.9,1.2 --phi 90 --line -f csv
         robokin path scara --from 0,60,100,0 --to 40,30,50,90 --json
     """
-    from robokin.cli import say
     from robokin.cli.arguments import joint_factors, load_robot, parse_configuration
     from robokin.cli.output.sink import format_of, sink
     from robokin.cli.paths import PathAnswer
+    from robokin.cli.statuses import say
     from robokin.errors import InputError
 
     kind = format_of(output, output_format(format, json), arrays=True)
@@ -165,11 +162,11 @@ def _path(
     """The path."""
     import numpy as np
 
-    from robokin.cli import say
+    from robokin.cli.statuses import say
     from robokin.cli.targets import parse_target
     from robokin.errors import InputError
-    from robokin.inverse.path import follow_line, interpolate_joints, line_task, no_path
-    from robokin.inverse.result import Result
+    from robokin.inverse.joint_paths import follow_line, interpolate_joints, line_task, no_path
+    from robokin.inverse.solutions import Result
     from robokin.inverse.solve import solve_ik
     from robokin.kinematics.forward import forward_kinematics
 

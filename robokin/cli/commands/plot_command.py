@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robokin.cli import DONE, NO
 from robokin.cli.completion import named_poses
 from robokin.cli.options import (
     AngleOption,
@@ -19,6 +18,7 @@ from robokin.cli.options import (
     output_format,
     parameter_overrides,
 )
+from robokin.cli.statuses import DONE, NO
 from robokin.cli.target_options import (
     ApproachOption,
     EulerOption,
@@ -107,11 +107,11 @@ def command(
     """
     import numpy as np
 
-    from robokin.cli import say
     from robokin.cli.arguments import joint_factors, load_entry, load_robot, parse_configuration, way_of
     from robokin.cli.output.sink import sink
     from robokin.cli.plots import FARTHEST, answer, asked, ending_of, scene_of, view_of, wanted_target
     from robokin.cli.poses import PoseMaker
+    from robokin.cli.statuses import say
     from robokin.errors import InputError
     from robokin.kinematics.forward import joint_frames
     from robokin.model import Mechanism
@@ -179,9 +179,9 @@ def _draw_mechanism(
     """Write a mechanism's picture, or what it shows."""
     from pathlib import Path
 
-    from robokin.cli import say
     from robokin.cli.mechanism_plots import answer, check_drawable, motion_to_draw, picture_of
     from robokin.cli.output.sink import sink
+    from robokin.cli.statuses import say
     from robokin.pictures.mechanism_scene import mechanism_scene
 
     check_drawable(mechanism, output, "--output")

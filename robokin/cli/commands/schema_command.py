@@ -53,7 +53,7 @@ def command(
 def _schema(words: list[str]) -> dict[str, Any]:
     """The schema of descriptions, or of a command's documents."""
     if not words:
-        from robokin.description.schema import json_schema
+        from robokin.formats.schema import json_schema
 
         return json_schema()
     from robokin.errors import InputError, shown

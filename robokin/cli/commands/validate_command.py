@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robokin.cli import DONE, WRONG_INPUT, say
 from robokin.cli.options import FormatOption, JsonOption, OutputOption, output_format
+from robokin.cli.statuses import DONE, WRONG_INPUT, say
 
 if TYPE_CHECKING:
     from robokin.cli.descriptions import Verdict

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robokin.cli import DONE, NO
 from robokin.cli.completion import robots, words
 from robokin.cli.options import (
     AngleOption,
@@ -21,6 +20,7 @@ from robokin.cli.options import (
     output_format,
     parameter_overrides,
 )
+from robokin.cli.statuses import DONE, NO
 
 if TYPE_CHECKING:
     from robokin.model import Robot
@@ -192,9 +192,9 @@ def _places(robot: Robot, units: Units, kind: str, at: list[str], arguments: dic
     from robokin.cli.progress import Stages
     from robokin.cli.targets import parse_place
     from robokin.cli.workspaces import place_record
+    from robokin.jobs.stages import stage
     from robokin.workspace.place import at_point
     from robokin.workspace.space import space_of
-    from robokin.workspace.stages import stage
 
     points = [parse_place(text, "--at", robot, units) for text in at]
     space = space_of(robot)
@@ -236,11 +236,11 @@ def _write(
     arguments: dict[str, Any],
 ) -> int:
     """Write samples to a file."""
-    from robokin.cli import say
     from robokin.cli.options import orientation_kind
     from robokin.cli.progress import Progress
     from robokin.cli.sample_files import write_samples
     from robokin.cli.sample_rows import Samples, sample_format
+    from robokin.cli.statuses import say
     from robokin.errors import InputError
     from robokin.workspace.space import space_of
 

@@ -46,7 +46,7 @@ def sink(output: str | None, option: str = "--output") -> Iterator[IO[bytes]]:
     if output is None:
         yield from _standard_output()
         return
-    place = Place(output, option)
+    place = Destination(output, option)
     try:
         with place.straight() if place.special else place.whole() as stream:
             yield stream
@@ -70,7 +70,7 @@ def _standard_output() -> Iterator[IO[bytes]]:
         raise
 
 
-class Place:
+class Destination:
     """Where an option wants a file: `path`, links followed; `special` where there is something else than a file.
 
     Raises OutputError for a place that cannot be written.

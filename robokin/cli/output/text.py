@@ -13,10 +13,7 @@ from robokin.errors import visible
 from robokin.tables.fast_json import pydantic_function
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from robokin.arrays import Array
 
 
 STEERING = re.compile(r"[\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")

@@ -1,0 +1,21 @@
+"""The kinds of arrays that functions take and return, in annotations. Shapes and units are in their docstrings."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+"""Real numbers."""
+
+Complex = NDArray[np.complex128]
+"""Complex numbers."""
+
+Flags = NDArray[np.bool_]
+"""Yes or no, each."""
+
+Index = NDArray[np.intp]
+"""Positions in other arrays, or counts."""
+
+Whole = NDArray[np.int64]
+"""Whole numbers."""

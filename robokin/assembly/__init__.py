@@ -1,0 +1,1 @@
+"""Planar mechanisms put together from the lengths of their links."""

@@ -1,0 +1,1 @@
+"""All solutions of a general chain of six joints: elimination, Newton's steps, homotopies, counting."""

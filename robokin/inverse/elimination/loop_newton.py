@@ -1,0 +1,214 @@
+"""Newton steps on the loop equation: approximate joint values made exact.
+
+Statement. Given values close to a solution of J1 L1 … J6 L6 = I, find the solution.
+Derivation. Let X = J1 L1 … J6 L6 at the values. Moving joint i by dq turns X by the twist s_i dq about the
+axis where the joint then is: s_i = (o × z, z) for a joint that turns about z through o, (z, 0) for one that
+slides along z. X = exp(e) with e = (v, w), w the rotation vector, v the translation to first order. So S dq = -e
+with the columns s_i is a Newton step on X = I.
+Degenerate case. Where the arm is singular S has no inverse. The step solves (SᵀS + |e|² I) dq = -Sᵀe instead:
+far off it is cautious, near the end it is Newton's. It converges quadratically where S is regular and, given that
+the error grows like the distance from the solutions, where these form a curve (J. Fan, Y. Yuan, "On the quadratic
+convergence of the Levenberg-Marquardt method without nonsingularity assumption", Computing 74, 2005). At an
+isolated double solution it converges linearly, as Newton's method does.
+
+All arrays here have the candidates last, (…, s), and each operation is on all candidates at once.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robokin.arrays import Array, Index
+from robokin.inverse.elimination.loop import Loop
+from robokin.spatial import invert
+
+STEP = 0.5
+"""The longest step of one joint [rad | size]: further off, the tangent says nothing of the curve."""
+
+FLOOR = 1e-15
+"""Least damping of joint i as a part of |s_i|²: some four times the rounding of SᵀS, so that its factors stay
+positive. |s_i| is great where the axis is far from the origin, as a slide that is long against the arm puts it."""
+
+DONE = 1e-14
+"""Candidates whose error [size and rad] is less are left alone: some ten times the rounding of X."""
+
+LONG = 30.0
+"""A slide [size] above which SᵀS, whose singular values are squares of ratios of links and slides, has too few digits,
+and the step comes from the singular values of S itself."""
+
+BLOCK = 2048
+"""Candidates at a time: the forty or so numbers of each (650 kB) stay in the second-level cache."""
+
+
+def refine(loop: Loop, closing: Array, index: Index, values: Array, steps: int) -> tuple[Array, Array, Array]:
+    """Values (s, 6) after some Newton steps, and what the loop then lacks of closing.
+
+    closing: (m, 4, 4) L6; index: (s,) into closing; values: (s, 6) [rad | size].
+    Returns values (s, 6) [rad | size], position (s,) [size] and angle (s,) [rad].
+    """
+    refined = np.array(values, dtype=np.float64)
+    position, angle = np.empty(len(refined)), np.empty(len(refined))
+    slides = np.flatnonzero(~loop.revolute)
+    # Columns x, y, z, p of L6, each (3, m): rows are the entries of what comes before in X.
+    last = np.ascontiguousarray(closing[:, :3].transpose(2, 1, 0))
+    # Values that run away are no numbers in the end, and close nothing.
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        for start in range(0, len(refined), BLOCK):
+            part = np.arange(start, min(start + BLOCK, len(refined)))
+            q, L = refined[part].T.copy(), last[..., index[part]]
+            far = _farness(loop, q)
+            for step in range(steps + 1):
+                axes, error = _follow(loop, L, q)
+                error[:3] /= far
+                squares = error * error
+                v, w = squares[:3].sum(axis=0), squares[3:].sum(axis=0)
+                open_ = v + w > DONE * DONE
+                ready = step == steps or not open_.any()
+                if ready or np.count_nonzero(open_) < 0.75 * len(part):
+                    done = slice(None) if ready else ~open_
+                    refined[part[done]] = q.T[done]
+                    position[part[done]], angle[part[done]] = far[done] * np.sqrt(v[done]), np.sqrt(w[done])
+                    if ready:
+                        break
+                    part, q, L, far = part[open_], q[:, open_], L[..., open_], far[open_]
+                    axes, error = axes[..., open_], error[:, open_]
+                    open_ = open_[open_]
+                S = _twists(loop, axes)
+                S[:, :3] /= far
+                S[slides] *= far
+                dq = _step(S, error)
+                if (long := far > LONG).any():
+                    dq[:, long] = (
+                        -STEP * limited(singular_step(S[..., long].transpose(2, 1, 0), error[:, long].T) / STEP).T
+                    )
+                dq[slides] *= far
+                # What has arrived stays, so that it does not depend on the others.
+                q += dq * open_
+    return refined, position, angle
+
+
+def _farness(loop: Loop, q: Array) -> Array:
+    """(s,) the longest slide of q (6, s) [size], at least 1: the unit of lengths in a step.
+
+    A turn moves the end of a long slide by that much, and what rounding leaves of its position would otherwise
+    outweigh the whole error of its orientation.
+    """
+    return np.asarray(np.max(np.abs(q[~loop.revolute]), axis=0, initial=1.0))
+
+
+def determinants(loop: Loop, values: Array) -> Array:
+    """|det S| (s,) at values (s, 6) [rad | size]: zero where the arm is singular. It depends on no target."""
+    q = np.asarray(values, dtype=np.float64).T
+    axes, _ = _follow(loop, np.zeros((4, 3, 1)), q)
+    return np.asarray(np.abs(np.linalg.det(_twists(loop, axes).transpose(2, 0, 1))))
+
+
+def closing_at(loop: Loop, values: Array) -> Array:
+    """The L6 (k, 4, 4) that close the loop at values (k, 6) [rad | size]."""
+    X = np.broadcast_to(np.eye(4), (len(values), 4, 4))
+    for i, turns in enumerate(loop.revolute):
+        X = X @ joint_motion(bool(turns), values[:, i])
+        if i < 5:
+            X = X @ loop.links[i]
+    return invert(X)
+
+
+def joint_motion(turns: bool, q: Array) -> Array:
+    """J (s, 4, 4) at q (s,)."""
+    J = np.zeros((len(q), 4, 4), dtype=q.dtype)
+    J[:, (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
+    if turns:
+        c, s = np.cos(q), np.sin(q)
+        J[:, 0, 0], J[:, 0, 1], J[:, 1, 0], J[:, 1, 1] = c, -s, s, c
+    else:
+        J[:, 2, 3] = q
+    return J
+
+
+def _follow(loop: Loop, last: Array, q: Array) -> tuple[Array, Array]:
+    """The joints' axes z and o (joint, 2, 3, s) and X's error v [size], w [rad] (6, s) at q (6, s)."""
+    s = q.shape[1]
+    axes = np.empty((6, 2, 3, s))
+    X = np.zeros((4, 3, s))
+    X[(0, 1, 2), (0, 1, 2)] = 1.0
+    c, sine = np.cos(q), np.sin(q)
+    turned = np.empty((2, 3, s))
+    for i, turns in enumerate(loop.revolute):
+        axes[i] = X[2:]
+        if turns:
+            np.multiply(X[:2], c[i], out=turned)
+            X[:2] *= sine[i]
+            turned[0] += X[1]
+            turned[1] -= X[0]
+            X[:2] = turned
+        else:
+            X[3] += q[i] * X[2]
+        if i < 5:
+            X = (loop.links[i].T @ X.reshape(4, 3 * s)).reshape(4, 3, s)
+    p = X[3]
+    X = last[:, 0, None] * X[0] + last[:, 1, None] * X[1] + last[:, 2, None] * X[2]
+    error = np.empty((6, s))
+    np.add(X[3], p, out=error[:3])
+    w = error[3:]
+    for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
+        np.subtract(X[i, j], X[j, i], out=w[k])
+    sine_of_error = 0.5 * np.sqrt((w * w).sum(axis=0))
+    angle = np.arctan2(sine_of_error, 0.5 * (X[0, 0] + X[1, 1] + X[2, 2] - 1.0))
+    none = sine_of_error == 0.0
+    w *= 0.5 * angle / np.where(none, 1.0, sine_of_error)
+    # A half turn has no sine and so no direction here: it must still not pass for the identity.
+    w[0] += np.where(none, angle, 0.0)
+    return axes, error
+
+
+def _twists(loop: Loop, axes: Array) -> Array:
+    """The joints' twists (joint, 6, s) for their axes (joint, 2, 3, s)."""
+    z, o = axes[:, 0], axes[:, 1]
+    S = np.empty((6, 6, z.shape[-1]))
+    S[:, 3:] = z
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        np.multiply(o[:, j], z[:, k], out=S[:, i])
+        S[:, i] -= o[:, k] * z[:, j]
+    for slides in np.flatnonzero(~loop.revolute):
+        S[slides, :3] = z[slides]
+        S[slides, 3:] = 0.0
+    return S
+
+
+def singular_step(S: Array, error: Array, damping: Array | None = None) -> Array:
+    """The dq (s, n) with (SᵀS + damping I) dq = Sᵀe, from the singular values of S (s, 6, n); error: (s, 6).
+
+    damping: (s,), |e|² if it is not given.
+    """
+    U, values, Vt = np.linalg.svd(S, full_matrices=False)
+    least = np.einsum("si,si->s", error, error) if damping is None else damping
+    squares = values * values + least[:, None] + (np.finfo(float).eps * values[:, :1]) ** 2
+    part = np.einsum("sik,si->sk", U, error) * values / np.maximum(squares, np.finfo(float).tiny)
+    return np.asarray(np.einsum("ski,sk->si", Vt, part))
+
+
+def limited(dq: Array) -> Array:
+    """Steps (s, n) shortened so that no joint moves by more than 1."""
+    return np.asarray(dq / np.maximum(np.max(np.abs(dq), axis=1, keepdims=True), 1.0))
+
+
+def _step(S: Array, error: Array) -> Array:
+    """The damped Newton step (6, s) for twists (joint, 6, s) and error (6, s), by elimination."""
+    s = error.shape[1]
+    M = np.empty((6, 7, s))  # SᵀS + damping, of which the upper triangle is kept, and Sᵀe as a seventh column
+    for i in range(6):
+        np.einsum("cs,jcs->js", S[i], S[i:], out=M[i, i:6])
+    np.einsum("cs,jcs->js", error, S, out=M[:, 6])
+    damping = np.einsum("cs,cs->s", error, error)
+    for i in range(6):
+        M[i, i] += damping + FLOOR * M[i, i]
+    for k in range(5):
+        # The matrix stays symmetric: column k below the diagonal is row k beside it.
+        factors = M[k, k + 1 : 6] / M[k, k]
+        M[k + 1 :, k + 1 :] -= factors[:, None] * M[k, None, k + 1 :]
+    dq = np.empty((6, s))
+    for k in range(5, -1, -1):
+        np.divide(M[k, 6], M[k, k], out=dq[k])
+        M[:k, 6] -= M[:k, k] * dq[k]
+    dq *= -STEP / np.maximum(np.abs(dq).max(axis=0), STEP)
+    return dq

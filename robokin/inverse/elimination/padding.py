@@ -1,0 +1,139 @@
+"""Arms with fewer than six joints, made six-joint chains by virtual joints at the tool.
+
+Statement. Let an arm have n < 6 joints and reach a set of poses of dimension n. Append 6 - n virtual joints
+that move the tool in directions that the arm cannot, so that the six together can move it in every
+direction. Every pose near an attainable one is then reached by the six-joint chain, and it is attainable by
+the arm itself exactly where all virtual values are zero. So the solutions of the six-joint chain whose
+virtual values vanish are all solutions of the arm, and the six-joint solvers serve for every arm.
+
+Which virtual joints: of the six elementary motions of a frame (slides along and turns about its axes) the
+subset that keeps the six-joint Jacobian best conditioned with the virtual values at zero; that a wrist of
+three turns about x, y, z is regular there (Z-Y-Z would be singular) comes out by itself. Where a choice makes
+a closed form of the chain (a spherical triple, three parallel axes, three prismatic joints) it is preferred.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations, pairwise, permutations
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from robokin.arrays import Array
+from robokin.kernel.chain import Chain, chain_size, exact, z_to
+from robokin.kernel.columns import ChainPlan, Constant
+from robokin.spatial import invert, translation_transform
+
+REGULAR = 1e-3
+"""Least singular value (lengths in the arm's size) at which a choice of virtual joints counts as regular."""
+
+SAMPLES = 6
+"""Configurations at which a choice is judged."""
+
+
+@dataclass(frozen=True, eq=False)
+class Padded:
+    """A chain of six joints of which the last `virtual` are none of the arm's."""
+
+    chain: Chain
+    virtual: int
+
+
+def padded_chains(chain: Chain, most: int = 40) -> Iterator[Padded]:
+    """Six-joint chains for an arm of at most six joints, the best conditioned first.
+
+    Yields nothing when the arm's own joints depend on each other everywhere (its rank is below n).
+    """
+    missing = 6 - chain.n
+    if missing == 0:
+        yield Padded(chain, 0)
+        return
+    size = chain_size(chain)
+    q = _sample(chain)
+    rated: list[tuple[float, int, tuple[int, ...]]] = []
+    places = _frames(chain, q[0])
+    for place, G in enumerate(places):
+        J = _tool_jacobians(chain, q, G, size)
+        for chosen in combinations(range(6), missing):
+            whole = np.concatenate([J, np.broadcast_to(np.eye(6)[:, chosen], (len(q), 6, missing))], axis=2)
+            least = float(np.median(np.linalg.svd(whole, compute_uv=False)[:, -1]))
+            if least > REGULAR:
+                rated.append((least, place, chosen))
+    rated.sort(key=lambda entry: -entry[0])
+    count = 0
+    for _, place, chosen in rated[:12]:
+        for order in permutations(chosen):
+            # Turns about one point may follow each other in any order; only where slides stand matters.
+            yield Padded(_appended(chain, places[place], order), missing)
+            count += 1
+            if count >= most:
+                return
+
+
+def _sample(chain: Chain) -> Array:
+    """Generic configurations (SAMPLES, n); the seed is arbitrary."""
+    size = chain_size(chain)
+    q = np.random.default_rng(7).uniform(-2.0, 2.0, (SAMPLES, chain.n))
+    return np.where(chain.revolute, q, 0.5 * size * q)
+
+
+_plans: WeakKeyDictionary[Chain, ChainPlan] = WeakKeyDictionary()
+
+
+def joint_plan(chain: Chain) -> ChainPlan:
+    """The way to the frame that each joint starts from and to the tool's, made when it is first asked for."""
+    plan = _plans.get(chain)
+    if plan is None:
+        segments = [[Constant(C, mark=True)] for C in chain.constants]
+        plan = _plans[chain] = ChainPlan(segments, chain.revolute, chain.offsets)
+    return plan
+
+
+def joint_frames_of(chain: Chain, q: Array) -> Array:
+    """The frame that each joint starts from and the tool's: (m, n + 1, 4, 4), at q: (m, n) without offsets."""
+    out = np.empty((len(q), chain.n + 1, 4, 4))
+    joint_plan(chain).frames(q, out)
+    return out
+
+
+def _tool_jacobians(chain: Chain, q: Array, G: Array, size: float) -> Array:
+    """Jacobians (m, 6, n) of the frame G fixed in the tool, in its own axes, lengths in the arm's size."""
+    F = joint_frames_of(chain, q)
+    tool = F[:, -1] @ G
+    R, p = tool[:, :3, :3], tool[:, None, :3, 3]
+    z, o = F[:, :-1, :3, 2], F[:, :-1, :3, 3]
+    turns = chain.revolute[:, None]
+    linear = np.where(turns, np.cross(z, p - o) / size, z)
+    angular = np.where(turns, z, 0.0)
+    return np.swapaxes(np.concatenate([linear @ R, angular @ R], axis=2), 1, 2)
+
+
+def _frames(chain: Chain, q: Array) -> list[Array]:
+    """Frames in the tool whose axes the virtual joints may have: the tool's, the last joint's, the wrist's."""
+    last = invert(chain.constants[-1])
+    frames = [np.eye(4), exact(last)]
+    if chain.n >= 2:
+        # Where the last two axes meet, if they do: a third one through that point makes a spherical wrist.
+        F = joint_frames_of(chain, q[None])[0]
+        z, o = F[-3:-1, :3, 2], F[-3:-1, :3, 3]
+        normal = np.cross(z[0], z[1])
+        if chain.revolute[-2:].all() and normal @ normal > 1e-12:
+            s = np.cross(o[0] - o[1], z[0]) @ -normal / (normal @ normal)
+            frames.append(exact(last @ translation_transform([0.0, 0.0, float(s)])))
+    return frames
+
+
+def _appended(chain: Chain, G: Array, order: tuple[int, ...]) -> Chain:
+    """The chain with virtual joints at the frame G in the tool: 0-2 slide along, 3-5 turn about x, y, z."""
+    frames = [G @ z_to(tuple(float(part) for part in np.eye(3)[axis % 3])) for axis in order]
+    constants = [*chain.constants[:-1], chain.constants[-1] @ frames[0]]
+    for before, after in pairwise(frames):
+        constants.append(invert(before) @ after)
+    constants.append(invert(frames[-1]))
+    return Chain(
+        np.stack([exact(C) for C in constants]),
+        np.concatenate([chain.revolute, [axis >= 3 for axis in order]]),
+        np.concatenate([chain.offsets, np.zeros(len(order))]),
+    )

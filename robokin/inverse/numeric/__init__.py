@@ -1,0 +1,1 @@
+"""Solutions and nearest configurations found step by step from initial guesses."""

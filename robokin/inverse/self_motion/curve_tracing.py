@@ -1,0 +1,138 @@
+"""Curves of configurations that reach one pose, as points in order.
+
+Statement. Given configurations and the directions of the curves that leave them, follow the curves.
+Derivation. Where two joints have one axis the curve is a straight line, known exactly (`null_motion.coaxial_line`).
+All others are followed step by step (`fronts`).
+Degenerate case. Lines of sliding joints never close: they end at bounds.
+
+Here x are joint values [rad | size] and lengths are in the arm's size.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robokin.arrays import Array, Flags
+from robokin.inverse.self_motion.fronts import REACH, TRIAL_STEPS, Fronts
+from robokin.inverse.self_motion.null_motion import (
+    CLOSES,
+    coaxial_line,
+    errors,
+    scale_of,
+)
+from robokin.kernel.chain import Chain
+
+BESIDE = 0.05
+"""How far from the polyline a point of the curve can be [rad | size]; a chord of LONGEST is off by 0.01."""
+
+MOVES = 1e-6
+"""A joint that keeps its value to this [rad | size] along a curve stands still."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A self-motion as points in order.
+
+    q: (k, n) [rad | m], each reaching the pose, angles not cut at full turns; tangents: (k, n) in x, of length 1;
+    closed: whether it was followed until it closed, the last point then being the first but for full turns; ended:
+    why it is not closed ("bound" for a sliding joint or a given bound, "lost" where it could not be followed);
+    dimension: of the set it is in; sheets: for a set of two dimensions or more the curves that were followed in it,
+    of which this is the first.
+    """
+
+    q: Array
+    tangents: Array
+    scale: Array
+    closed: bool
+    ended: str = ""
+    dimension: int = 1
+    sheets: tuple[Curve, ...] = ()
+
+    @property
+    def x(self) -> Array:
+        """(k, n) the points in x [rad | size]."""
+        return np.asarray(self.q / self.scale)
+
+    @property
+    def joints(self) -> tuple[int, ...]:
+        """The joints that move, from 1."""
+        moving = np.max([np.ptp(curve.x, axis=0) for curve in (self.sheets or (self,))], axis=0) > MOVES
+        return tuple((np.flatnonzero(moving) + 1).tolist())
+
+
+def trace_many(
+    chain: Chain,
+    T: Array,
+    x: Array,
+    ways: Array,
+    size: float,
+    locked: Flags | None = None,
+    bounds: Array | None = None,
+    trial: Flags | None = None,
+) -> list[Curve | None]:
+    """The curves through x (s, n) at poses T (s, 4, 4) along ways (s, n), with joints locked (s, n) or none.
+
+    x: [rad | size]; bounds: (n, 2) [rad | m], beyond which a curve is not followed; trial: (s,) for which it is not
+    known whether a curve leads away from x: where none does there is None.
+    """
+    s, n = x.shape
+    locked = np.zeros((s, n), dtype=bool) if locked is None else locked
+    _, J = errors(chain, T, x, size)
+    lines = [coaxial_line(J[i], ways[i]) for i in range(s)]
+    curves: list[Curve | None] = [None] * s
+    for i, line in enumerate(lines):
+        if line is not None:
+            curves[i] = _line(chain, T[i], x[i], line, size, bounds)
+    rest = np.array([i for i, curve in enumerate(curves) if curve is None], dtype=np.intp)
+    if len(rest):
+        fronts = Fronts(chain, T[rest], x[rest], ways[rest], size, locked[rest], bounds)
+        fronts.run(np.zeros(len(rest), dtype=bool) if trial is None else trial[rest])
+        for place, i in enumerate(rest):
+            curves[i] = None if fronts.stays[place] else _followed(fronts, place)
+    return curves
+
+
+def leads_away(chain: Chain, T: Array, x: Array, ways: Array, size: float, locked: Flags | None = None) -> Flags:
+    """(s,) whether curves of configurations that reach T (s, 4, 4) lead from x (s, n) along ways (s, n).
+
+    With joints locked (s, n) or none.
+
+    A single step is no proof: where four solutions merge, its error is of the third order and may be below rounding.
+    """
+    fronts = Fronts(chain, T, x, ways, size, np.zeros(x.shape, dtype=bool) if locked is None else locked, None)
+    for _ in range(TRIAL_STEPS):
+        fronts.advance()
+    return fronts.away()
+
+
+def _line(chain: Chain, T: Array, x: Array, line: Array, size: float, bounds: Array | None) -> Curve | None:
+    """The straight line through x (n,) along `line` (n,); None where it does not reach the pose after all."""
+    moving = np.flatnonzero(line)
+    turns = bool(chain.revolute[moving].all())
+    scale = scale_of(chain, size)
+    if turns:
+        s = np.linspace(-np.pi, np.pi, 61)
+    else:
+        low, high = np.full(chain.n, -REACH), np.full(chain.n, REACH)
+        if bounds is not None:
+            low, high = np.maximum(low, bounds[:, 0] / scale), np.minimum(high, bounds[:, 1] / scale)
+        with np.errstate(divide="ignore"):
+            ends = np.stack([(low - x)[moving], (high - x)[moving]]) / line[moving]
+        s = np.append(np.linspace(float(np.max(np.min(ends, axis=0))), float(np.min(np.max(ends, axis=0))), 61), 0.0)
+        s = np.unique(s)
+    points = x + s[:, None] * line
+    e, _ = errors(chain, np.broadcast_to(T, (len(s), 4, 4)), points, size)
+    if float(np.max(np.abs(e))) > 10.0 * CLOSES:
+        return None
+    tangents = np.tile(line / np.linalg.norm(line), (len(s), 1))
+    return Curve(points * scale, tangents, scale, turns, "" if turns else "bound")
+
+
+def _followed(fronts: Fronts, i: int) -> Curve:
+    """Curve i of the fronts."""
+    points, tangents = fronts.points(i)
+    closed = bool(fronts.closed[i])
+    ended = "" if closed else max(fronts.ended[i], fronts.ended[i + fronts.s])
+    return Curve(points * fronts.scale, tangents, fronts.scale, closed, ended)

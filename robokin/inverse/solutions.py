@@ -1,0 +1,182 @@
+"""What `solve_ik` answers: frozen values, each solution with its own residual."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import SupportsIndex, overload
+
+from robokin.arrays import Array, Flags, Index
+from robokin.brief import Answer, Brief
+from robokin.errors import InputTypeError
+from robokin.expected import described
+from robokin.model import Robot
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Solution(Brief):
+    """One joint configuration.
+
+    q: (n,) [rad | m]; `branch` names it (shoulder, elbow, wrist) or is empty; the errors are those of its
+    pose against the target, measured by forward kinematics [m, rad]. `free` names the joints that may
+    trade motion with each other at this configuration while the pose stays (a self-motion), in
+    numbers from 1; it is empty where the solution stands alone.
+    """
+
+    q: Array
+    branch: str
+    within_limits: bool
+    position_error: float
+    angle_error: float
+    free: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Arc(Brief):
+    """A piece of a self-motion that lies within the joint limits.
+
+    q: (k, n) [rad | m] configurations along it, each reaching the pose; the first and the last are its ends,
+    where a joint meets its limit. `whole` is true where the self-motion is a closed curve that lies within the
+    limits everywhere, and the first and the last are then the same but for full turns.
+    """
+
+    q: Array
+    whole: bool = False
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Family(Brief):
+    """A self-motion: a connected set of configurations that all reach the pose.
+
+    joints: those that move, in numbers from 1; dimension: 1 for a curve, more for a surface; closed: whether the
+    curve was followed until it closed; arcs: its pieces within the limits (all of it where limits do not count);
+    solution: which of the listed solutions, from 0, stands for it, or -1 where none does (none is within the limits,
+    or the list was cut).
+    """
+
+    joints: tuple[int, ...]
+    dimension: int
+    closed: bool
+    arcs: tuple[Arc, ...]
+    solution: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Question(Brief):
+    """What was asked: for the pose T (4, 4) or (m, 4, 4) [m] of a robot's tool.
+
+    `task` is what of the pose counts, `limits` whether the joint limits do, `hold` the joints (from 0) that are held
+    at values [rad | m].
+    """
+
+    robot: Robot
+    T: Array
+    task: str = "pose"
+    limits: bool = True
+    hold: Mapping[int, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result(Answer):
+    """The answer for one target: a sequence of its solutions.
+
+    `complete` is true only where every solution is listed, or stands on one of the `families`; `basis` is what
+    that rests on: "counted" (as many complex solutions found as the arm has at any pose), "accounted" (the paths
+    of a homotopy from two independent starts all ended: regular, singular or infinite), None where not all solutions
+    are known. Where they are, and `complete` is false, the list was cut, or only `postures` holds. `certificate` says
+    the basis in a sentence with the numbers, or why there is none. `reason` says why there is no solution; `nearest`
+    is then the closest configuration found. `counts` says how many were left after each filter: "closing" (distinct
+    ones that reach the pose), "within_limits", "listed"; and how many the listed ones make with full turns of joints
+    within the limits: "turns". `postures` is true where every solution is listed or differs from a listed one only in
+    joints that are free on their own, whatever the others do.
+    """
+
+    solutions: tuple[Solution, ...]
+    complete: bool
+    method: str
+    reason: str | None = None
+    nearest: Solution | None = None
+    counts: Mapping[str, int] = field(default_factory=dict)
+    postures: bool = False
+    basis: str | None = None
+    certificate: str = ""
+    all_known: bool = False
+    families: tuple[Family, ...] = ()
+    question: Question | None = None
+
+    @property
+    def reachable(self) -> bool:
+        """Whether there is a solution."""
+        return bool(self.solutions)
+
+    def __len__(self) -> int:
+        """The number of solutions."""
+        return len(self.solutions)
+
+    @overload
+    def __getitem__(self, i: SupportsIndex) -> Solution: ...
+    @overload
+    def __getitem__(self, i: slice) -> tuple[Solution, ...]: ...
+    def __getitem__(self, i: SupportsIndex | slice) -> Solution | tuple[Solution, ...]:
+        """Solution i, or a tuple of some."""
+        return self.solutions[i]
+
+    def __iter__(self) -> Iterator[Solution]:
+        """The solutions in their order."""
+        return iter(self.solutions)
+
+    def __repr__(self) -> str:
+        """A line: how many solutions, whether they are all, or why there is none."""
+        if not self.solutions:
+            return f"<no solution: {self.reason}>"
+        count = "1 solution" if len(self) == 1 else f"{len(self)} solutions"
+        return f"<{count}, {'these are all' if self.complete else 'perhaps not all'}: {self.method}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BatchResult(Answer):
+    """The answers for m targets as arrays, padded with NaN; `result[i]` is the answer for target i.
+
+    q: (m, k, n) [rad | m]; count: (m,); position_error, angle_error: (m, k) [m, rad];
+    within_limits: (m, k), False where padded.
+    """
+
+    q: Array
+    count: Index
+    position_error: Array
+    angle_error: Array
+    within_limits: Flags
+    complete: bool
+    method: str
+    single: Callable[[int], Result]
+    """Makes the answer for one target: reasons are worked out only for those that are looked at."""
+    branches: Callable[[], list[str]]
+    """Names all solutions, target after target: as many as `count` has in all."""
+    reason: Callable[[int], str | None]
+    """Says why a target has no solution."""
+    question: Question | None = None
+
+    def __len__(self) -> int:
+        """The number of targets."""
+        return len(self.count)
+
+    def __getitem__(self, i: SupportsIndex) -> Result:
+        """The answer for target i, negative ones from the end. Raises IndexError."""
+        if not hasattr(i, "__index__"):
+            raise InputTypeError(f"index: found {described(i)}, expected the number of a target, from 0")
+        number = i.__index__()
+        if not -len(self) <= number < len(self):
+            raise IndexError(f"target {number} of {len(self)}")
+        number %= len(self)
+        result = self.single(number)
+        if self.question is None:
+            return result
+        return replace(result, question=replace(self.question, T=self.question.T[number]))
+
+    def __iter__(self) -> Iterator[Result]:
+        """The answers in the order of the targets."""
+        return (self[i] for i in range(len(self)))
+
+    def __repr__(self) -> str:
+        """A line: how many targets, and how many of them are reached."""
+        return f"<{len(self)} targets, {int((self.count > 0).sum())} reached: {self.method}>"

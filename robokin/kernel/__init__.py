@@ -1,0 +1,1 @@
+"""The arithmetic of motion: a robot's table as a chain, and frames along it."""

@@ -1,0 +1,144 @@
+"""A robot as an alternation of constant transforms and motions about or along z.
+
+Every convention becomes T = C0 J1(q1) C1 J2(q2) … Jn(qn) Cn, where J is Rot(z, q + offset) or
+Trans(0, 0, q + offset) and each C is a constant rigid transform. What follows (forward kinematics,
+Jacobian, inverse kinematics) is written for this form alone. A variable that enters with the other sign turns the
+frame of its joint by half a turn about x, and back: Rot(z, offset - q) = F Rot(z, q - offset) F, and so of a slide.
+
+Each joint's frame may stand anywhere on its axis: moved along z it gives the same T. It stands where the table puts
+it, unless that is far off the arm: calibrated tables of axes that are parallel but for 1e-4 rad put frames hundreds of
+metres away, and lengths of 0.1 m would be differences of such numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from robokin.arrays import Array, Flags
+from robokin.brief import Brief
+from robokin.kernel.arm_size import axis_path
+from robokin.kernel.dh import modified_dh, standard_dh
+from robokin.model import Joint, JointType, Robot
+from robokin.spatial import invert, rotation_transform
+
+EXACT = 1e-15
+"""An entry of a constant rotation this near to 0 or ±1 is meant to be just that: it is rounding of the
+products of right angles (a few 1e-16). Exact entries cost no arithmetic later."""
+
+HALF_TURN = np.diag([1.0, -1.0, -1.0, 1.0])
+"""F, half a turn about x; its own inverse."""
+
+FAR = 2.0
+"""Frames that are farther from each other, in the arm's size and added up, than this are moved along their axes to the
+arm. In tables that are written by hand it is less than 1.5: only offsets along parallel axes may go to and fro."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Chain(Brief):
+    """C0 J1 C1 … Jn Cn.
+
+    constants: (n + 1, 4, 4) [m]; revolute: (n,) bool; offsets: (n,) [rad | m]; start: (3,) where the arm begins, the
+    origin of its base, in the frame that the first joint starts from [m].
+    """
+
+    constants: Array
+    revolute: Flags
+    offsets: Array
+    start: Array = field(default_factory=lambda: np.zeros(3))
+
+    @property
+    def n(self) -> int:
+        """The number of joints."""
+        return len(self.revolute)
+
+
+_chains: WeakKeyDictionary[Robot, Chain] = WeakKeyDictionary()
+
+
+def chain_of(robot: Robot) -> Chain:
+    """The chain of a robot: base, rows and tool, constants between two joints multiplied out. Kept."""
+    chain = _chains.get(robot)
+    if chain is None:
+        constants = [robot.base]
+        for row in robot.rows:
+            before, after = row_constants(row, robot.convention)
+            constants[-1] = constants[-1] @ before
+            if row.moves:
+                constants.append(after)
+            else:
+                constants[-1] = constants[-1] @ after
+        constants[-1] = constants[-1] @ robot.tool
+        offsets = np.array([joint.offset for joint in robot.joints]) * robot.senses + 0.0  # no negative zeros
+        start = (invert(constants[0]) @ robot.base)[:3, 3]
+        chain = Chain(np.stack([exact(C) for C in constants]), robot.revolute, offsets, start)
+        chain = _chains[robot] = near_the_arm(chain)
+    return chain
+
+
+def chain_size(chain: Chain) -> float:
+    """The arm's size [m]: the lengths along and between its axes (see `arm_size`), or 1 where there are none."""
+    return axis_path(chain.constants, chain.revolute, chain.offsets, chain.start)[0]
+
+
+def near_the_arm(chain: Chain) -> Chain:
+    """The chain with its joints' frames moved along their axes to the arm, if they stand far off."""
+    size, shifts = axis_path(chain.constants, chain.revolute, chain.offsets, chain.start)
+    if float(np.sum(np.linalg.norm(chain.constants[1:, :3, 3], axis=1))) <= FAR * size:
+        return chain
+    constants = chain.constants.copy()
+    start = chain.start.copy()
+    for i in range(chain.n):
+        # A joint along or about z lets a shift along z pass; a slide lets every translation pass, and starts where the
+        # joint before it does.
+        shift = np.array([0.0, 0.0, shifts[i]])
+        if not chain.revolute[i] and i > 0:
+            shift = -constants[i, :3, :3].T @ constants[i, :3, 3]
+        constants[i, :3, 3] += constants[i, :3, :3] @ shift
+        constants[i + 1, :3, 3] -= shift
+        if i == 0:
+            start -= shift
+    return Chain(constants, chain.revolute, chain.offsets, start)
+
+
+def row_constants(row: Joint, convention: str) -> tuple[Array, Array]:
+    """The constant transforms (4, 4) before and after the motion of one row, the motion being along z."""
+    before, after = _constants(row, convention)
+    if row.moves and row.sense < 0:
+        return before @ HALF_TURN, HALF_TURN @ after
+    return before, after
+
+
+def _constants(row: Joint, convention: str) -> tuple[Array, Array]:
+    """The same for a variable that enters with its own sign."""
+    # The variable's own cell is 0 in the row, so that one formula serves every type of row.
+    if convention == "standard":
+        return np.eye(4), standard_dh(row.theta, row.d, row.a, row.alpha)
+    if convention == "modified":
+        return modified_dh(row.alpha, row.a, 0.0, 0.0), standard_dh(row.theta, row.d, 0.0, 0.0)
+    origin = np.eye(4) if row.origin is None else row.origin
+    if row.type is JointType.FIXED or row.axis is None:
+        return origin, np.eye(4)
+    A = z_to(tuple(float(part) for part in row.axis))
+    return exact(origin @ A), invert(A)
+
+
+@lru_cache(maxsize=64)
+def z_to(axis: tuple[float, float, float]) -> Array:
+    """A rotation (4, 4) that takes z to the given axis (x, y, z), of any length but zero."""
+    u = np.array(axis) / np.linalg.norm(axis)
+    normal = np.cross([0.0, 0.0, 1.0], u)
+    angle = np.arctan2(np.linalg.norm(normal), u[2])
+    return exact(rotation_transform(normal if np.any(normal) else [1.0, 0.0, 0.0], angle))
+
+
+def exact(T: Array) -> Array:
+    """T (4, 4) with entries of the rotation that are 0 or ±1 but for rounding made exactly that."""
+    T = T.copy()
+    R = T[:3, :3]
+    whole = np.round(R)
+    T[:3, :3] = np.where(np.abs(R - whole) <= EXACT, whole, R) + 0.0
+    return T

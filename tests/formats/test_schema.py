@@ -1,0 +1,118 @@
+"""The JSON Schema says what the reader reads."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+import yaml
+from formats.texts import DEGREES, arm, linkage
+
+from robokin.formats.library import library_files
+from robokin.formats.schema import json_schema
+
+SCHEMA = json_schema()
+KNOWN = {"$schema", "title", "description", "$defs", "$ref", "anyOf", "type", "properties", "required", "const", "enum",
+         "additionalProperties", "items", "minItems", "maxItems"}  # fmt: skip
+TYPES = {"string": str, "number": (int, float), "array": list, "object": dict, "boolean": bool, "null": type(None)}
+
+
+def errors(value, schema, where="$"):
+    """What a value lacks by a schema: the few words of JSON Schema that ours is made of."""
+    assert set(schema) <= KNOWN, set(schema) - KNOWN
+    if "$ref" in schema:
+        name = schema["$ref"].removeprefix("#/$defs/")
+        yield from errors(value, SCHEMA["$defs"][name], where)
+    if "anyOf" in schema:
+        found = [list(errors(value, part, where)) for part in schema["anyOf"]]
+        if all(found):
+            yield from min(found, key=len)
+    if "const" in schema and value != schema["const"]:
+        yield f"{where} is not {schema['const']}"
+    if "enum" in schema and value not in schema["enum"]:
+        yield f"{where} is none of {schema['enum']}"
+    if "type" in schema:
+        kinds = [schema["type"]] if isinstance(schema["type"], str) else schema["type"]
+        is_flag = isinstance(value, bool)
+        if not any(isinstance(value, TYPES[kind]) and (kind == "boolean" or not is_flag) for kind in kinds):
+            yield f"{where} is no {kinds}"
+            return
+    if isinstance(value, dict):
+        for name in schema.get("required", []):
+            if name not in value:
+                yield f"{where} lacks {name}"
+        extra = schema.get("additionalProperties", True)
+        for name, inner in value.items():
+            if name in schema.get("properties", {}):
+                yield from errors(inner, schema["properties"][name], f"{where}.{name}")
+            elif extra is False:
+                yield f"{where} has {name}"
+            elif isinstance(extra, dict):
+                yield from errors(inner, extra, f"{where}.{name}")
+    if isinstance(value, list):
+        if not schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", len(value)):
+            yield f"{where} has {len(value)} items"
+        for i, inner in enumerate(value):
+            yield from errors(inner, schema.get("items", {}), f"{where}[{i}]")
+
+
+def test_the_schema_is_json_and_holds_every_definition_that_it_names():
+    text = json.dumps(SCHEMA)
+    assert json.loads(text) == SCHEMA
+    for part in text.split('"#/$defs/')[1:]:
+        assert part[: part.index('"')] in SCHEMA["$defs"]
+
+
+@pytest.mark.parametrize("path", library_files(), ids=lambda path: path.stem)
+def test_the_library_keeps_to_the_schema(path):
+    value = yaml.safe_load(path.read_text(encoding="utf-8"))
+    assert list(errors(value, SCHEMA)) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        arm(
+            "type: R, a: l1/2, limits: [-90, 90]",
+            "name: 2b, type: fixed, d: 5",
+            tail="poses: {home: [0]}\nbase: Trans(1, 0, 0)\n",
+        ),
+        arm("type: R", tail="base:\nparameters:\n"),
+        arm("name: 1, type: R"),
+        DEGREES
+        + "convention: frames\njoints: [{type: R, axis: x}, {type: P, origin: 'Trans(1, 0, 0)', axis: [0, 0, 1]}]\n",
+        DEGREES + "joints: {type: RRP, a: [1, 2, 3], theta: [0, 0, ~]}\n",
+        DEGREES + "joints: {type: [R, P], limits: [[0, 1], ~]}\n",
+        linkage("type: revolute, links: [ground, crank], at: [0, 0], actuated: true"),
+        linkage(
+            "type: universal, links: [ground, crank], axes: [[1, 0, 0], [0, 1, 0]]",
+            "type: custom, links: [1, 2], freedoms: 2",
+        ),
+    ],
+)
+def test_what_the_reader_takes_keeps_to_the_schema(text):
+    assert list(errors(yaml.safe_load(text), SCHEMA)) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{}",
+        "[]",
+        "name: x\njoints: [{type: R}]\n",
+        "robokin: 2\nname: x\njoints: [{type: R}]\n",
+        "robokin: 1\nname: x\n",
+        "robokin: 1\nname: x\njoints: []\n",
+        arm("a: 5"),
+        arm("type: revolut"),
+        arm("type: R, alhpa: 5"),
+        arm("type: R, limits: [1]"),
+        arm("type: R, a: [1]"),
+        arm(tail="units2: 1\n"),
+        linkage("type: rotary, links: [ground, crank]"),
+        linkage("type: revolute"),
+        linkage("type: revolute, links: [ground, crank], at: [1]"),
+    ],
+)
+def test_what_the_reader_refuses_breaks_the_schema(text):
+    assert list(errors(yaml.safe_load(text), SCHEMA)) != []

@@ -1,0 +1,186 @@
+"""Results come in their tasks' order, from any number of cores; nothing is left behind."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from robokin.errors import InputError
+from robokin.jobs import ordered_map
+from robokin.jobs.ordered_map import WorkerError, in_order, usable_cores
+
+
+def square(x):
+    return x * x
+
+
+def slow_first(x):
+    time.sleep(0.02 if x % 3 == 0 else 0.0)
+    return x, os.getpid()
+
+
+def fail_at_five(x):
+    if x == 5:
+        raise ValueError("five is wrong")
+    return x
+
+
+def end_at_five(x):
+    if x == 5:
+        os._exit(9)
+    return x
+
+
+class StubbornError(Exception):
+    """An error that does not come back from a pickle."""
+
+    def __init__(self, a, b):
+        super().__init__(f"{a} and {b}")
+
+
+def fail_stubbornly(x):
+    raise StubbornError(x, "more")
+
+
+def no_children():
+    return not multiprocessing.active_children()
+
+
+@pytest.mark.parametrize("cores", [1, 2, 3, None])
+def test_results_come_in_order(cores):
+    assert list(in_order(square, range(50), cores)) == [x * x for x in range(50)]
+    assert no_children()
+
+
+def test_slow_tasks_do_not_change_the_order():
+    results = list(in_order(slow_first, range(30), 3))
+    assert [x for x, _ in results] == list(range(30))
+    assert len({process for _, process in results}) == 3
+    assert os.getpid() not in {process for _, process in results}
+
+
+def test_threads_do_the_same(monkeypatch):
+    monkeypatch.setattr(ordered_map, "_can_fork", lambda: False)
+    assert list(in_order(square, range(50), 3)) == [x * x for x in range(50)]
+    with pytest.raises(ValueError, match="five"):
+        list(in_order(fail_at_five, range(50), 2))
+
+
+def test_one_task_or_one_core_stays_in_this_process():
+    assert [pid for _, pid in in_order(slow_first, [1], 4)] == [os.getpid()]
+    assert {pid for _, pid in in_order(slow_first, range(4), 1)} == {os.getpid()}
+    assert list(in_order(square, [], 2)) == []
+
+
+def test_functions_need_not_pickle():
+    factor = np.arange(3.0)
+    assert [float(value.sum()) for value in in_order(lambda x: factor * x, range(5), 2)] == [0, 3, 6, 9, 12]
+
+
+def test_large_tasks_and_results_pass(rng):
+    tasks = [rng.random(200_000) for _ in range(9)]
+    for task, result in zip(tasks, in_order(np.sqrt, tasks, 2), strict=True):
+        assert np.array_equal(result, np.sqrt(task))
+
+
+def test_tasks_are_drawn_as_they_are_needed():
+    drawn = []
+
+    def tasks():
+        for x in range(10_000):
+            drawn.append(x)
+            yield x
+
+    results = in_order(square, tasks(), 2)
+    for _ in range(3):
+        next(results)
+    assert len(drawn) <= 3 + ordered_map.AHEAD * 2 + 2
+    results.close()
+    assert no_children()
+
+
+@pytest.mark.parametrize("cores", [1, 2])
+def test_an_error_is_raised_in_its_turn(cores):
+    results = in_order(fail_at_five, range(20), cores)
+    assert [next(results) for _ in range(5)] == [0, 1, 2, 3, 4]
+    with pytest.raises(ValueError, match="five is wrong"):
+        next(results)
+    assert no_children()
+
+
+def test_an_error_that_cannot_travel_is_told_in_words():
+    with pytest.raises(RuntimeError, match="StubbornError: 0 and more"):
+        list(in_order(fail_stubbornly, range(3), 2))
+
+
+def test_a_worker_that_is_ended_is_noticed():
+    with pytest.raises(WorkerError, match="ended from outside"):
+        list(in_order(end_at_five, range(20), 2))
+    assert no_children()
+
+
+def test_a_worker_does_its_own_work_alone():
+    def inner(x):
+        return sum(in_order(square, range(x), 2))
+
+    assert list(in_order(inner, range(5), 2)) == [0, 0, 1, 5, 14]
+
+
+def test_less_than_one_core_is_refused():
+    with pytest.raises(InputError, match="found 0 cores, expected at least 1"):
+        in_order(square, range(3), 0)
+    assert usable_cores() >= 1
+
+
+INTERRUPTED = """
+import signal, time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs are started without
+from robokin.jobs.ordered_map import in_order
+
+def work(x):
+    time.sleep(0.02)
+    return x
+
+try:
+    for x in in_order(work, range(100_000), 2):
+        print(x, flush=True)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there are no process groups")
+def test_ctrl_c_ends_everything_without_a_word():
+    process = subprocess.Popen(
+        [sys.executable, "-c", INTERRUPTED], stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
+    )
+    assert process.stdout.readline() == b"0\n"
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to every process of the group
+    out, err = process.communicate(timeout=20)
+    assert out.endswith(b"interrupted\n")
+    assert err == b""
+    assert process.returncode == 0
+    with pytest.raises(ProcessLookupError):
+        os.killpg(process.pid, 0)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there are no process groups")
+def test_workers_end_when_their_parent_is_killed():
+    process = subprocess.Popen([sys.executable, "-c", INTERRUPTED], stdout=subprocess.PIPE, start_new_session=True)
+    assert process.stdout.readline() == b"0\n"
+    process.kill()
+    process.communicate(timeout=20)
+    for _ in range(200):
+        try:
+            os.killpg(process.pid, 0)
+        except ProcessLookupError:
+            return
+        time.sleep(0.05)
+    pytest.fail("a worker outlived its parent")
