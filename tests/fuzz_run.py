@@ -231,6 +231,10 @@ def in_a_process(call: Call) -> Outcome:
     return Outcome(done.returncode, done.stdout, err, min(time.monotonic() - start, SOFT), "", place)
 
 
+CLEARED = "\x1b[K"
+"""What clears the rest of a terminal's line."""
+
+
 def faults(call: Call, outcome: Outcome) -> Iterator[str]:
     """What is wrong with what came of a call: a name for each kind."""
     command, err = call.arguments[0], outcome.err
@@ -245,7 +249,10 @@ def faults(call: Call, outcome: Outcome) -> Iterator[str]:
         yield f"warning: {found[0]}"
     if outcome.status == 2 and not err and "stderr" not in call.closed and command not in ("validate", "check"):
         yield f"status 2 without a sentence: {command}"
-    if "\x1b" in err or (b"\x1b" in outcome.out and not call.terminal):
+    # The line that says how far long work is clears itself; a CSV for programs keeps names as they are.
+    text = err.replace(CLEARED, "") if call.terminal else err
+    raw = b"\x1b" in outcome.out and not call.terminal and "csv" not in call.arguments
+    if "\x1b" in text or raw:
         yield f"steering characters: {call.command}"
     if outcome.left:
         yield f"left behind: {call.command}"

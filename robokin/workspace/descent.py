@@ -41,7 +41,7 @@ must be stretched to the last: what is left to gain is little, and the steps are
 STUCK_CLOSE, STEPS_CLOSE = 1e-3, 60
 """The same two limits for these."""
 
-NEARLY, STUCK_LAST, STEPS_LAST = 1e-3, 1e-6, 300
+NEARLY, STUCK_LAST, STEPS_LAST = 2e-3, 1e-6, 300
 """Searches that ended this near [size] are followed to their very end: next to a singular configuration each step
 gains a part of the distance only."""
 

@@ -30,6 +30,10 @@ be reached has ten samples on average, and half of all lie on limits, where boun
 LOOKED_AT = 12
 """Samples of a cell among which the best is chosen."""
 
+THIN = 1e-6
+"""Least side of a table, as a part of how far from the axis it lies: what the first joint leaves alone may be one point,
+of which samples differ by rounding."""
+
 TURN = 2.0 * np.pi
 
 
@@ -57,7 +61,7 @@ class Starts:
         self.offset = value - q[0]
         self.q, self.seen = q, seen
         self.corner = seen.min(axis=1)
-        spread = float(np.max(seen.max(axis=1) - self.corner)) or 1.0
+        spread = max(float(np.max(seen.max(axis=1) - self.corner)), THIN * float(np.max(np.abs(seen)))) or 1.0
         self.step = spread / np.sqrt((kept or more.shape[1]) / EACH) * (1.0 + 1e-9)
         self.shape = np.maximum(np.ceil((seen.max(axis=1) - self.corner) / self.step), 1).astype(np.intp)
         cells = self._cell(seen)

@@ -344,3 +344,49 @@ def test_a_root_within_the_limits_is_not_given_up_for_one_outside(number, values
     for result in (robokin.solve_ik(robot, T), robokin.solve_ik(robot, T[None])[0]):
         assert result.solutions
         assert all(solution.within_limits for solution in result.solutions)
+
+
+LEFT_TO_ROUNDING = Robot(
+    "a chain on which no split of the true loop finds the same number twice",
+    (
+        Joint("q1", JointType.REVOLUTE, d=0.27, a=0.32, alpha=np.radians(-10.573684785170268)),
+        Joint("q2", JointType.PRISMATIC, a=0.09, alpha=np.pi, limits=(0.0, 0.49)),
+        Joint("q3", JointType.REVOLUTE, a=0.29, alpha=np.pi),
+        Joint("q4", JointType.REVOLUTE, alpha=RIGHT),
+        Joint("q5", JointType.PRISMATIC, a=-0.46, alpha=np.pi, limits=(0.0, 0.68)),
+        Joint("q6", JointType.REVOLUTE, a=-0.32, alpha=np.pi),
+    ),
+)
+
+
+def test_splits_that_find_another_number_at_every_pose_do_not_count():
+    """Between them they found two of the four complex solutions, and answers of two were called complete."""
+    robot = LEFT_TO_ROUNDING
+    assert analysis_of(robot).number == 4
+    rng, scale = np.random.default_rng(680), Scale(robot)
+    for kind in ("random", "grid 90", "q4 = 0", "round + 1e-09"):
+        for q in configurations(robot, scale, rng, 5, kind):
+            result, broken = answered(robot, q)
+            # Of a chain that is singular at most round poses a singular configuration may be missed, and it is said.
+            assert not broken or (broken == ["on no family"] and not result.complete)
+
+
+@pytest.mark.parametrize("q", [[30, 30, 90, -30, 90, -60], [90, 90, 90, 90, 90, -180]])
+@pytest.mark.parametrize("off", [0.0, 1e-14, 1e-13, 1e-12])
+def test_a_straight_wrist_on_a_stretched_arm_keeps_its_self_motion(q, off):
+    """At a root that counts many times a curve leads away that is not seen from where Newton's steps end beside it."""
+    robot = robokin.load("motomini")
+    q = np.radians(q) + off * np.random.default_rng(1).uniform(-1.0, 1.0, 6)
+    result, broken = answered(robot, q)
+    assert not broken
+    assert len(result.families) == 1
+
+
+def test_a_self_motion_that_touches_a_corner_of_nearly_full_turns_has_a_piece_of_one_point():
+    """Three joints meet their limits at once, and those of a joint are so near to a full turn that it may have two."""
+    robot = robokin.load("mycobot-280")
+    low, high = robot.limits.T
+    q = np.array([high[0], high[1], low[2], RIGHT, -RIGHT, high[5]])
+    result, broken = answered(robot, q)
+    assert not broken
+    assert any(len(arc.q) == 1 for family in result.families for arc in family.arcs)

@@ -46,8 +46,9 @@ FOLDED = planar((0.84, 12, 69), (0.26, -239, -112), (0.62, -237, 76))
     [
         (FOLDED, (1.1982485243397283, -0.2883585541295732, 0.0)),
         (robokin.load("scorbot"), (-0.2760816838856534, -0.1532972107628303, 0.7367543185347126)),
+        (drawn_arm(28), (0.9499253653153266, 0.7703069586076401, 0.3664731491408801)),
     ],
-    ids=["three links", "scorbot"],
+    ids=["three links", "scorbot", "a sliver of five joints"],
 )
 def test_points_behind_a_barrier(robot, point):
     assert reachable(space_of(robot), [point]).all()
@@ -63,6 +64,14 @@ def test_no_sample_of_a_drawn_arm_is_denied(seed, rng):
     for kind in KINDS:
         p = positions(space, sampled(space, kind, 500, rng)).T
         assert np.count_nonzero(~reachable(space, p)) == 0, kind
+
+
+def test_no_sample_of_a_circle_is_denied_that_two_joints_of_one_axis_reach(rng):
+    """What the first joint leaves alone is one point, which samples know but for rounding."""
+    space = space_of(drawn_arm(123))
+    assert (len(space.moving), space.dimension) == (2, 1)
+    p = positions(space, sampled(space, "uniform", 20000, rng)).T
+    assert reachable(space, p).all()
 
 
 @pytest.mark.parametrize("name", ["scorbot-er4u", "openarm-left", "kr5-arc", "panda", "piper-old", "stanford"])

@@ -101,20 +101,23 @@ def choose_splits(loop: Loop, values: Array | None = None) -> list[int]:
     """The splits that find solutions of a loop, best first; none if there are none.
 
     They are tried on poses of the arm itself, or on those of joint values (k, 6) [rad | size], and the complex
-    solutions are counted. Splits of the perturbed loop are tried when no other finds any.
+    solutions are counted. Splits of the perturbed loop are tried, too, where no other finds the same number at nearly
+    every random pose: what such a split finds is left to rounding.
     """
     generic, round_ = trial_poses(loop)
     generic = generic if values is None else values
     closing = closing_at(loop, np.concatenate([generic, round_]))
+    numbers: dict[int, Index] = {}
     for splits in (ORDER, tuple(SPLITS + split for split in ORDER)):
-        numbers = {split: _numbers_of_split(loop, split, closing, len(generic)) for split in splits}
-        found = {split: int(number[: len(generic)].sum()) for split, number in numbers.items()}
-        best = max(found.values())
-        good = [split for split, count in found.items() if count > 0 and count >= WORTH * best]
-        if good:
-            more = {split: GENERIC * found[split] + int(numbers[split][len(generic) :].sum()) for split in good}
-            return sorted(good, key=lambda split: -more[split])
-    return []
+        numbers |= {split: _numbers_of_split(loop, split, closing, len(generic)) for split in splits}
+        found = {split: number[: len(generic)] for split, number in numbers.items()}
+        most = max(int(number.max()) for number in found.values())
+        if most and any(np.sum(number == most) >= len(generic) - 1 for number in found.values()):
+            break
+    best = max(int(number.sum()) for number in found.values())
+    good = [split for split, number in found.items() if 0 < best * WORTH <= number.sum()]
+    more = {split: (GENERIC - 1) * int(found[split].sum()) + int(numbers[split].sum()) for split in good}
+    return sorted(good, key=lambda split: -more[split])
 
 
 def _numbers_of_split(loop: Loop, split: int, closing: Array, generic: int) -> Index:

@@ -29,6 +29,7 @@ from robokin.inverse.self_motion.null_motion import (
     cone,
     cones,
     corrected,
+    errors,
     follows,
     null_spaces,
     scale_of,
@@ -94,6 +95,13 @@ def suspected(chain: Chain, T: Array, q: Array, size: float, alone: bool = True)
     trial = _follow(chain, T, x, J, np.flatnonzero(trying), size, ways, dimension)
     if alone:
         _sharpen(chain, T, np.where(dimension == 0, null, 0), size, exact, double)
+        # Beside a root that counts many times no curve is seen; at the root itself one may lead away.
+        many = np.flatnonzero(double & (null > 1) & (dimension == 0))
+        if len(many):
+            x[many] = exact[many] / scale
+            _, J[many] = errors(chain, T[many], x[many], size)
+            trial |= _follow(chain, T, x, J, many, size, ways, dimension)
+            double[many] = dimension[many] == 0
     # Of a curve of double solutions, as of a stretched arm with a straight wrist, a seed has half of the digits.
     curved = (dimension == 1) & (null > 1) & ~manifold
     for many in np.unique(null[curved]).tolist():

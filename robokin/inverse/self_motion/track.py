@@ -211,7 +211,11 @@ class Tracks:
         """
         lower, higher = np.minimum(margin[1:], margin[:-1]), np.maximum(margin[1:], margin[:-1])
         rows = np.flatnonzero((k[1:] == k[:-1]) & (lower < 0.0) & (higher > -KINK))
-        turns = self.turned(x[np.where(margin[rows] > margin[rows + 1], rows, rows + 1)])
+        # Between limits that are nearly a full turn apart each end may have full turns of its own.
+        better = margin[rows] > margin[rows + 1]
+        turns, others = (self.turned(x[np.where(best, rows, rows + 1)]) for best in (better, ~better))
+        differ = np.flatnonzero(np.any(turns != others, axis=1))
+        rows, turns = np.append(rows, rows[differ]), np.concatenate([turns, others[differ]])
 
         def room(i: Index, y: Array) -> Array:
             return np.where(self.moving[k[rows[i]]], np.minimum(y - self.low, self.high - y), np.inf)
