@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 """Real numbers."""
@@ -19,3 +19,10 @@ Index = NDArray[np.intp]
 
 Whole = NDArray[np.int64]
 """Whole numbers."""
+
+
+def read_only(values: ArrayLike) -> Array:
+    """A copy that cannot be changed."""
+    array = np.array(values, dtype=np.float64)
+    array.flags.writeable = False
+    return array

@@ -55,19 +55,19 @@ def document_of(value: Answer, units: Units | None = None) -> Any:
     if isinstance(value, Differential):
         return _differential(value, own)
     if isinstance(value, Path):
-        from robokin.cli.paths import PathAnswer
+        from robokin.records.path_records import PathRecords
 
-        return PathAnswer(value.robot, own or value.robot.units, value.kind, value, None).document()
+        return PathRecords(value, own or value.robot.units).document()
     if isinstance(value, Workspace):
-        from robokin.cli.workspaces import workspace_record
+        from robokin.records.workspace_records import workspace_record
 
         return workspace_record(value, own or value.space.robot.units)
     if isinstance(value, Mobility):
-        from robokin.cli.mobilities import mechanism_record
+        from robokin.records.freedom_records import mechanism_record
 
         return mechanism_record(value, own or value.mechanism.units, 0)
     if isinstance(value, Manoeuvrability):
-        from robokin.cli.mobilities import wheeled_record
+        from robokin.records.freedom_records import wheeled_record
 
         return wheeled_record(value.base, value, own or value.base.units)
     return expect_kind(value, Answer, "value", "an answer of one of robokin's functions")
@@ -80,7 +80,7 @@ def expect_units(value: object) -> Units:
 
 def show(entry: Robot | Mechanism | WheeledBase, units: Units | None = None) -> Document:
     """What `robokin show` says of a robot, a mechanism or a wheeled base."""
-    from robokin.cli.descriptions import described_record
+    from robokin.records.description_records import described_record
 
     if not isinstance(entry, Robot | Mechanism | WheeledBase):
         expect_kind(
@@ -99,7 +99,7 @@ def library() -> list[Document]:
 
 def validate(file: str | File) -> Document:
     """What `robokin validate` says of a file, or of a name of the library."""
-    from robokin.cli.descriptions import file_record, verdict_of
+    from robokin.records.description_records import file_record, verdict_of
 
     if not isinstance(file, str | File):
         expect_kind(file, str, "file", "a file's path or a name of the library")
@@ -113,8 +113,8 @@ def fk(
 
     `frames` adds the frame after each row of the table, `orientation` another form of the rotation.
     """
-    from robokin.cli.records import PoseBlock, configuration_records, poses_in
     from robokin.kinematics.forward import forward_kinematics, joint_values, row_frames
+    from robokin.records.pose_records import PoseBlock, configuration_records, poses_in
 
     robot, frames = expect_robot(robot), expect_flag(frames, "frames")
     more = [] if orientation is None else [expect_choice(orientation, ORIENTATIONS, "orientation")]
@@ -159,15 +159,17 @@ def jacobian(
 
 def singular(robot: Robot, task: TaskName | None = None, units: Units | None = None) -> Document:
     """What `robokin singular` says of a robot."""
-    from robokin.cli.singularities import singular_record
+    from robokin.kinematics.singular import singular_configurations
+    from robokin.records.singularity_records import singular_record
 
-    return singular_record(expect_robot(robot), robot.units if units is None else expect_units(units), task)
+    own = expect_robot(robot).units if units is None else expect_units(units)
+    return singular_record(robot, own, task, singular_configurations(robot, task))
 
 
 def dof(entry: Robot | Mechanism | WheeledBase, units: Units | None = None) -> Document:
     """What `robokin dof` says of a robot, a mechanism or a wheeled base."""
     if isinstance(entry, Robot):
-        from robokin.cli.mobilities import robot_record
+        from robokin.records.freedom_records import robot_record
 
         return robot_record(entry, entry.units if units is None else expect_units(units))
     if isinstance(entry, WheeledBase):
@@ -188,7 +190,7 @@ def workspace(robot: Robot, units: Units | None = None, **options: Any) -> Docum
 
 def place(robot: Robot, point: ArrayLike, seed: int = 0, units: Units | None = None) -> Document:
     """What `robokin workspace --at` says of a point: (3,) [m]."""
-    from robokin.cli.workspaces import place_record
+    from robokin.records.workspace_records import place_record
     from robokin.workspace.place import at_point
     from robokin.workspace.space import space_of
 
@@ -200,10 +202,10 @@ def place(robot: Robot, point: ArrayLike, seed: int = 0, units: Units | None = N
 
 def frame(expression: str, units: Units | None = None) -> Document:
     """What `robokin frame` says of a transform expression in the units (by default metres and degrees)."""
-    from robokin.cli.records import frame_record, poses_in
     from robokin.formats.number_expressions import Scope
     from robokin.formats.transform_expressions import evaluate_transform
     from robokin.records.envelope import envelope
+    from robokin.records.pose_records import frame_record, poses_in
 
     expression = cast(str, expect_kind(expression, str, "expression", "a transform expression, such as 'Rot(z, 90)'"))
     own = Units(angle="deg") if units is None else expect_units(units)
@@ -220,15 +222,16 @@ def plot(
     """What `robokin plot` says of a robot at q: (n,) or (m, n) [rad | m], of solutions, or of a mechanism."""
     own = None if units is None else expect_units(units)
     if isinstance(what, Mechanism):
-        from robokin.cli.mechanism_plots import check_drawable, drawn_record
+        from robokin.pictures.drawn_mechanism import check_drawable
         from robokin.pictures.mechanism_scene import mechanism_scene
+        from robokin.records.picture_records import drawn_record
 
         if q is not None:
             raise InputError("q: is for robots, expected none for a mechanism")
         check_drawable(what, None, "what")
         return drawn_record(mechanism_scene(what, None, None, own or what.units))
-    from robokin.cli.plots import arms_record
     from robokin.drawings import scene_with
+    from robokin.records.picture_records import arms_record
 
     return arms_record(*scene_with(what, q, expect_flag(frames, "frames"), None, own))
 
@@ -253,7 +256,7 @@ def _configurations(q: Array) -> Array:
 
 def _in_joint_units(robot: Robot, units: Units, q: Array) -> Array:
     """Joint values (m, n) in the units, without the last digit's dust of a change of units."""
-    from robokin.cli.arguments import in_units, joint_factors
+    from robokin.model.joint_units import in_units, joint_factors
 
     with np.errstate(over="ignore", invalid="ignore"):
         values = in_units(q, joint_factors(robot, units))
@@ -277,24 +280,29 @@ def _solutions(
 def _solution_document(
     result: Result, question: Question, units: Units, explain: bool, options: Mapping[str, Any]
 ) -> Document:
-    from robokin.cli.answers import Answers
+    from robokin.records.solution_records import SolutionRecords
 
     robot = question.robot
     q = np.zeros((1, robot.n))
     q[0, [*question.hold]] = [*question.hold.values()]
     held = dict(zip(question.hold, _in_joint_units(robot, units, q)[0, [*question.hold]].tolist(), strict=True))
-    arguments = {"task": question.task, "limits": question.limits}
-    if options.get("near") is not None:
-        arguments["near"] = np.asarray(options["near"], dtype=np.float64)
-    return Answers(robot, units, (None, None), arguments, True, explain, held).record(question.T, result)
+    document = SolutionRecords(robot, units, question.task, held).record(question.T, result)
+    if explain:
+        from robokin.records.worked_step_records import explanation_of
+
+        arguments = {"task": question.task, "limits": question.limits}
+        if options.get("near") is not None:
+            arguments["near"] = np.asarray(options["near"], dtype=np.float64)
+        document["explanation"] = explanation_of(robot, units, question.T, result, **arguments).record()
+    return document
 
 
 def _differential(found: Differential, units: Units | None) -> Any:
-    from robokin.cli.jacobians import Jacobians
+    from robokin.records.jacobian_records import JacobianRecords
 
     robot, q = found.robot, _configurations(found.q)
     own = units or robot.units
-    maker = Jacobians(robot, own, found.frame, found.task.name, q.ndim == 1)
+    maker = JacobianRecords(robot, own, found.frame, found.task.name)
     rows = q.reshape(-1, robot.n)
     whole = found if q.ndim > 1 else _of_one(found)
     records = [*maker.records(_in_joint_units(robot, own, rows), whole)]

@@ -18,8 +18,8 @@ from robokin.model import Mechanism, Robot, expect_robot
 from robokin.units import Units
 
 if TYPE_CHECKING:
-    from robokin.cli.plots import AskedPostures
     from robokin.pictures.arm_scene import Scene
+    from robokin.pictures.drawn_arm import AskedPostures
 
 KINDS = ("svg", "png", "pdf", "html", "text")
 
@@ -93,15 +93,11 @@ def draw(
         from robokin.pictures.arm_text import arm_text
 
         return Drawing(kind, arm_text(scene).encode())
-    if kind == "html":
-        from robokin.pictures.arm_page import arm_page
+    from robokin.pictures.drawn_arm import arm_picture
+    from robokin.pictures.picture_files import picture_ending
 
-        return Drawing(kind, arm_page(scene))
-    from robokin.pictures.arm_stills import arm_still
-    from robokin.pictures.workspace_stills import require_matplotlib
-
-    require_matplotlib(f".{kind}")
-    return Drawing(kind, arm_still(scene, kind))
+    picture_ending(f"picture.{kind}", "kind")
+    return Drawing(kind, arm_picture(scene, kind))
 
 
 def _view(view: Sequence[float]) -> tuple[float, float]:
@@ -120,10 +116,8 @@ def scene_with(
     units: Units | None,
 ) -> tuple[Scene, AskedPostures]:
     """The picture of a robot at configurations, or with the solutions of a target, and what was asked for."""
-    from robokin.cli.plots import FARTHEST, asked, scene_of, with_solutions
-    from robokin.cli.targets import Target
-    from robokin.kinematics.forward import joint_frames
     from robokin.pictures.arm import default_configuration
+    from robokin.pictures.drawn_arm import AskedPostures, given_postures, scene_of, solved_postures
 
     if isinstance(what, Result):
         if what.question is None:
@@ -135,17 +129,14 @@ def scene_with(
     given = [] if q is None else [*_rows(robot, q)]
     if isinstance(what, Result):
         assert what.question is not None
-        wanted = with_solutions(robot, own, given, Target(what.question.T, what.question.task), what)
+        wanted = solved_postures(what.question, own, given, result=what)
     else:
         if not given:
             home, name = default_configuration(robot)
             given = [home]
-        wanted = asked(robot, own, given, None)
+        wanted = AskedPostures(given_postures(robot, own, given))
     if not wanted.postures:
         raise InputError(f"what: nothing can be drawn: {what!r}, expected a result with a solution or a q")
-    for posture in wanted.postures:
-        if not np.max(np.abs(joint_frames(robot, posture.q)[:, :3, 3])) < FARTHEST:
-            raise InputError("q: the arm is too long for a picture, expected smaller values")
     return scene_of(robot, own, wanted, name, view, frames), wanted
 
 
@@ -157,7 +148,7 @@ def _rows(robot: Robot, q: ArrayLike) -> np.ndarray[tuple[int, int], np.dtype[np
 
 
 def _mechanism(mechanism: Mechanism, kind: str, view: tuple[float, float] | None, units: Units) -> bytes:
-    from robokin.cli.mechanism_plots import check_drawable, motion_to_draw, picture_of
+    from robokin.pictures.drawn_mechanism import check_drawable, motion_to_draw, picture_of
     from robokin.pictures.mechanism_scene import mechanism_scene
     from robokin.pictures.mechanism_text import mechanism_text
 

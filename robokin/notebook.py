@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
 from robokin.brief import Answer
-from robokin.cli.output.numbers import counted, show
 from robokin.documents import document_of
-from robokin.errors import InputError
+from robokin.errors import InputError, counted
 from robokin.expected import expect_numbers
 from robokin.model import Mechanism, Robot, WheeledBase
+from robokin.number_text import show
 
 MOST_ROWS = 50
 """Rows of a table: more are counted below it."""

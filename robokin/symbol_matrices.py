@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from robokin.brief import Answer
-from robokin.cli.symbolic_text import symbolic_latex, symbolic_page, symbolic_record
 from robokin.derivation.symbolic_kinematics import SymbolicKinematics, symbolic_kinematics
+from robokin.derivation.symbolic_latex import symbolic_latex
 from robokin.expected import expect_flag, expect_kind
 from robokin.model import Robot, expect_robot
+from robokin.records.symbolic_records import symbolic_record
+from robokin.reports.symbolic_pages import symbolic_page
 from robokin.units import Units
 
 
@@ -42,7 +44,7 @@ class Symbols(Answer):
 
     def python(self) -> str:
         """The source of a numpy function of the joint values."""
-        from robokin.cli.symbolic_python import python_source
+        from robokin.derivation.symbolic_python import python_source
 
         return python_source(self.robot, self.units, self.kinematics)
 

@@ -144,9 +144,11 @@ class CommandGroup(TyperGroup):
 
 def build(name: str, function: Any) -> Any:
     """A command of its own from a function with Typer's annotations; its docstring is the help."""
+    from robokin.cli.option_groups import expanded
+
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
     text, _, examples = str(function.__doc__).partition("Examples:\n")
-    app.command(name, cls=TextCommand, help=text.rstrip(), context_settings=CONTEXT)(function)
+    app.command(name, cls=TextCommand, help=text.rstrip(), context_settings=CONTEXT)(expanded(function))
     command: Any = typer.main.get_command(app)
     command.examples = tuple(line.strip() for line in examples.splitlines() if line.strip())
     return command

@@ -1,103 +1,207 @@
-"""What all checks share: their options, and the way from marks to output and status."""
+"""What all checks share: their options, declared once, and the one way from answers to output and status."""
 
 from __future__ import annotations
 
+import functools
+import inspect
 import math
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Annotated
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
-from robokin.cli.options import choose, output_format
+from robokin.cli.options import (
+    AngleOption,
+    FormatOption,
+    JsonOption,
+    LengthOption,
+    OutputOption,
+    SetOption,
+    choose,
+    effective_units,
+    output_format,
+    parameter_overrides,
+)
 from robokin.cli.statuses import DONE, NO
 from robokin.errors import InputError, shown
 from robokin.grading.feedback import ANSWER, LEVELS, PART
 from robokin.grading.guarded import BUDGET
 
 if TYPE_CHECKING:
-    from robokin.cli.checks import Report
+    from robokin.grading.mark_items import Item, Report
+    from robokin.grading.marking import Rules, Subject
     from robokin.grading.tolerance import Tolerance
     from robokin.units import Units
 
-TolOption = Annotated[
-    str | None,
-    typer.Option("--tol", "--atol", metavar="L", help="How far a position may be off.  [default: 0.001 of the arm]"),
-]
-TolAngleOption = Annotated[
-    str | None, typer.Option("--tol-angle", metavar="A", help="How far an orientation may be off.  [default: 0.1 deg]")
-]
-RtolOption = Annotated[
-    str | None,
-    typer.Option("--rtol", metavar="R", help="Added to --tol: this part of the right value.  [default: 0]"),
-]
-InputAnswersOption = Annotated[
-    str | None,
-    typer.Option("--input", "-i", metavar="FILE", help="A CSV of answers with a header; - for standard input."),
-]
-KeyOption = Annotated[
-    str | None,
-    typer.Option("--key", metavar="FILE", help="With --input: a CSV of the questions, by the same ids."),
-]
-GradescopeOption = Annotated[
-    str | None,
-    typer.Option("--gradescope", metavar="FILE", help="Also write the results.json that Gradescope reads."),
-]
-PointsOption = Annotated[
-    str | None,
-    typer.Option("--points", metavar="P", help="With --gradescope: total points.  [default: 1 an item]"),
-]
-VisibilityOption = Annotated[
-    str | None,
-    typer.Option(
-        "--visibility", metavar="WHO", help="With --gradescope: visible, hidden, after_due_date or after_published."
+VISIBILITIES = ("visible", "hidden", "after_due_date", "after_published")
+"""Who sees a test of an autograder, and when: the words of Gradescope's format."""
+
+LEAST_BUDGET, GREATEST_BUDGET = 0.01, 86400.0
+"""Seconds: a clock's ticks and a day."""
+
+
+def _text(name: str, metavar: str, help: str, *others: str) -> Any:
+    return Annotated[str | None, typer.Option(name, *others, metavar=metavar, help=help)]
+
+
+def length_tolerance(help: str) -> Any:
+    """The option --tol of a check."""
+    return _text("--tol", "L", help, "--atol")
+
+
+def angle_tolerance(help: str) -> Any:
+    """The option --tol-angle of a check."""
+    return _text("--tol-angle", "A", help)
+
+
+OPTIONS: dict[str, Any] = {
+    "input": _text("--input", "FILE", "A CSV of answers with a header; - for standard input.", "-i"),
+    "key": _text("--key", "FILE", "With --input: a CSV of the questions, by the same ids."),
+    "follow": Annotated[bool, typer.Option("--follow", help="Read what symbolic links point to.")],
+    "tol": length_tolerance("How far a position may be off.  [default: 0.001 of the arm]"),
+    "tol_angle": angle_tolerance("How far an orientation may be off.  [default: 0.1 deg]"),
+    "rtol": _text("--rtol", "R", "Added to --tol: this part of the right value.  [default: 0]"),
+    "budget": _text("--budget", "SECONDS", "Processor time for each answer.  [default: 10]"),
+    "partial": _text(
+        "--partial", "SCORE", "The least score of an answer with a known mistake, such as another unit."
     ),
-]
-BudgetOption = Annotated[
-    str | None,
-    typer.Option("--budget", metavar="SECONDS", help="Processor time for each answer.  [default: 10]"),
-]
-FeedbackOption = Annotated[
-    str | None,
-    typer.Option(
-        "--feedback",
-        metavar="LEVEL",
-        help="What is told: verdict, part (what is wrong), distance (how far), answer.  [default: answer; what "
-        "Gradescope's students read: part]",
+    "feedback": _text(
+        "--feedback", "LEVEL", "What is told: verdict, part (what is wrong), distance (how far), answer.  "
+        "[default: answer; what Gradescope's students read: part]",
     ),
-]
-PartialOption = Annotated[
-    str | None,
-    typer.Option(
-        "--partial", metavar="SCORE", help="The least score of an answer with a known mistake, such as another unit."
+    "gradescope": _text("--gradescope", "FILE", "Also write the results.json that Gradescope reads."),
+    "points": _text("--points", "P", "With --gradescope: total points.  [default: 1 an item]"),
+    "visibility": _text(
+        "--visibility", "WHO", "With --gradescope: visible, hidden, after_due_date or after_published."
     ),
-]
-FollowOption = Annotated[bool, typer.Option("--follow", help="Read what symbolic links point to.")]
+    "output": OutputOption, "format": FormatOption, "json": JsonOption,
+    "angle": AngleOption, "length": LengthOption, "set_": SetOption,
+}  # fmt: skip
+"""The options by the names of their parameters."""
+
+FILES = ("input", "key", "follow")
+TOLERANCES = ("tol", "tol_angle", "rtol")
+DELIVERY = ("feedback", "gradescope", "points", "visibility", "output", "format", "json")
+MARKS = ("budget", "partial", *DELIVERY, "angle", "length", "set_")
+
+Kind = TypeVar("Kind", bound="Subject")
 
 
-@dataclass(frozen=True)
-class Rules:
-    """What holds for all marks: seconds for each answer, and the least score of an answer with a known mistake."""
+def marking(*names: str, **own: Any) -> Callable[[Callable[..., int]], Callable[..., int]]:
+    """A command with the options of some names behind its own; it is handed what they say as its argument `way`.
 
-    budget: float = BUDGET
-    partial: float | None = None
+    own: declarations that differ from those of `OPTIONS`.
+    """
+
+    def with_options(function: Callable[..., int]) -> Callable[..., int]:
+        hints = get_type_hints(function, include_extras=True)
+        parameters = [
+            parameter.replace(annotation=hints[name])
+            for name, parameter in inspect.signature(function).parameters.items()
+            if name != "way"
+        ]
+        for name in names:
+            default = False if name in ("follow", "json") else None
+            kind, annotation = inspect.Parameter.POSITIONAL_OR_KEYWORD, own.get(name, OPTIONS[name])
+            parameters.append(inspect.Parameter(name, kind, default=default, annotation=annotation))
+
+        @functools.wraps(function)
+        def command(**typed: Any) -> int:
+            shared = {name: typed.pop(name) for name in names}
+            return function(**typed, way=Marking(shared))
+
+        command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+        command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+        return command
+
+    return with_options
 
 
-@dataclass(frozen=True)
-class Delivery:
-    """Where marks go and how: `kind` is the format, `feedback` what they tell, if that is said."""
+class Marking:
+    """What the options that checks share say: how answers are marked, and where the marks go.
 
-    kind: str
-    output: str | None
-    gradescope: str | None
-    points: float | None
-    visibility: str | None
-    feedback: str | None = None
-    rules: Rules = field(default_factory=Rules)
+    Raises InputError before any work is done.
+    """
+
+    def __init__(self, typed: Mapping[str, Any]) -> None:
+        """`typed` is what was typed, by the names of `OPTIONS`."""
+        from robokin.tables.sink import format_of
+
+        self.typed = typed
+        self.input: str | None = typed.get("input")
+        self.key: str | None = typed.get("key")
+        self.follow = bool(typed.get("follow"))
+        self.gradescope: str | None = typed["gradescope"]
+        self.kind = format_of(typed["output"], output_format(typed["format"], typed["json"]))
+        for name in ("points", "visibility") if self.gradescope is None else ():
+            if typed[name] is not None:
+                raise InputError(f"--{name} is about the results of an autograder, expected --gradescope FILE with it")
+        self.points = None if typed["points"] is None else plain_number(typed["points"], "--points")
+        self.feedback = choose(typed["feedback"], LEVELS, "--feedback")
+        self.visibility = choose(typed["visibility"], VISIBILITIES, "--visibility")
+        self.budget = _budget(typed.get("budget"))
+        self.partial = _partial(typed.get("partial"))
+
+    @property
+    def rules(self) -> Rules:
+        """What holds for all marks."""
+        from robokin.grading.marking import Rules
+
+        return Rules(self.budget, self.partial)
+
+    @property
+    def overrides(self) -> dict[str, str]:
+        """The parameters of --set."""
+        return parameter_overrides(self.typed["set_"])
+
+    def one_source(self, options: dict[str, object]) -> None:
+        """Raise InputError where answers come from options and from a file."""
+        given = [name for name, value in options.items() if value]
+        if self.input is not None and given:
+            raise InputError(f"--input and {given[0]} exclude each other, expected one of them")
+        if self.input is None and self.key is not None:
+            raise InputError("--key goes with --input, the file of the answers")
+        if self.input == "-" == self.key:
+            raise InputError("--input and --key are both standard input, expected a file for one of them")
+
+    def subject(self, kind: type[Kind], robot: str, *, table: bool = False, **more: Any) -> Kind:
+        """What answers about a robot are marked against; `table` tells whether its table is asked for."""
+        from robokin.cli.arguments import load_robot
+        from robokin.grading.tolerance import default_tolerance
+
+        model = load_robot(robot, self.overrides)
+        if not (model.n or table):
+            raise InputError(f"{model.name} has no joints, expected a robot that can move")
+        units = effective_units(model.units, self.typed["length"], self.typed["angle"])
+        return kind(model, units, self.tolerance(default_tolerance(model, table=table), units), **more)
+
+    def tolerance(self, default: Tolerance, units: Units) -> Tolerance:
+        """The tolerance that the options state, the default's values where they do not. Raises InputError."""
+        from robokin.cli.arguments import parse_numbers
+
+        stated = {}
+        for name, option, angle, factor in (
+            ("position", "--tol", False, units.metres),
+            ("angle", "--tol-angle", True, units.radians),
+        ):
+            text = self.typed["tol_angle" if angle else "tol"]
+            if text is not None:
+                (value,) = parse_numbers(text, option, [angle], units, "an angle" if angle else "a length")
+                if value < 0.0:
+                    raise InputError(f"{option}: found {shown(text)}, expected 0 or more")
+                stated[name] = float(value * factor)
+        relative = self.typed.get("rtol")
+        return replace(default, **stated, relative=0.0 if relative is None else plain_number(relative, "--rtol"))
+
+    def finish(self, check: str, robot: str, subject: Subject, items: Iterable[Item]) -> int:
+        """Mark the answers and write the marks; `robot` is what the robot was called. The status."""
+        return self.deliver(subject.report(check, subject.robot.id or robot, tuple(items)))
 
     def deliver(self, report: Report) -> int:
         """Write the marks; the status."""
-        from robokin.cli.check_output import gradescope, written
-        from robokin.cli.output.sink import sink
+        from robokin.reports.mark_report import results, written
+        from robokin.tables.sink import sink
 
         names = {item.student for item in report.items}
         if self.gradescope is not None and len(names) > 1:
@@ -109,57 +213,31 @@ class Delivery:
         students = self.gradescope is not None and self.kind == "table"
         data = written(report, self.kind, self.feedback or (PART if students else ANSWER))
         if self.gradescope is not None:
-            results = gradescope(report, self.points, self.visibility, self.feedback or PART)
+            document = results(report, self.points, self.visibility, self.feedback or PART)
             with sink(self.gradescope, "--gradescope") as stream:
-                stream.write(results)
-        with sink(self.output) as stream:
+                stream.write(document)
+        with sink(self.typed["output"]) as stream:
             stream.write(data)
         return DONE if report.right else NO
 
 
-def delivery(
-    output: str | None, format: str | None, json: bool, gradescope: str | None, points: str | None,
-    visibility: str | None, feedback: str | None = None, budget: str | None = None, partial: str | None = None,
-) -> Delivery:  # fmt: skip
-    """Where the options send the marks. Raises InputError before any work is done."""
-    from robokin.cli.check_output import VISIBILITIES
-    from robokin.cli.output.sink import format_of
-
-    kind = format_of(output, output_format(format, json))
-    if gradescope is None:
-        for option, value in (("--points", points), ("--visibility", visibility)):
-            if value is not None:
-                raise InputError(f"{option} is about the results of an autograder, expected --gradescope FILE with it")
-    worth = None if points is None else plain_number(points, "--points")
-    told = choose(feedback, LEVELS, "--feedback")
-    who = choose(visibility, VISIBILITIES, "--visibility")
-    return Delivery(kind, output, gradescope, worth, who, told, Rules(_budget(budget), _partial(partial)))
-
-
 def _budget(text: str | None) -> float:
     """The seconds of --budget. Raises InputError."""
-    if text is None:
-        return BUDGET
-    seconds = plain_number(text, "--budget")
+    seconds = BUDGET if text is None else plain_number(text, "--budget")
     if not LEAST_BUDGET <= seconds <= GREATEST_BUDGET:
         raise InputError(
-            f"--budget: found {shown(text)}, expected seconds for each answer, {LEAST_BUDGET:g} to {GREATEST_BUDGET:g}"
+            f"--budget: found {shown(text or '')}, expected seconds for each answer, "
+            f"{LEAST_BUDGET:g} to {GREATEST_BUDGET:g}"
         )
     return seconds
 
 
 def _partial(text: str | None) -> float | None:
     """The score of --partial. Raises InputError."""
-    if text is None:
-        return None
-    score = plain_number(text, "--partial")
-    if score > 1.0:
+    score = None if text is None else plain_number(text, "--partial")
+    if text is not None and score is not None and score > 1.0:
         raise InputError(f"--partial: found {shown(text)}, expected a score from 0 to 1")
     return score
-
-
-LEAST_BUDGET, GREATEST_BUDGET = 0.01, 86400.0
-"""Seconds: a clock's ticks and a day."""
 
 
 def plain_number(text: str, option: str) -> float:
@@ -171,36 +249,3 @@ def plain_number(text: str, option: str) -> float:
     if not (math.isfinite(value) and value >= 0.0):
         raise InputError(f"{option}: found '{shown(text)}', expected a number of 0 or more")
     return value
-
-
-def stated_tolerance(
-    default: Tolerance, tol: str | None, tol_angle: str | None, rtol: str | None, units: Units
-) -> Tolerance:
-    """The tolerance that the options state, the default's values where they do not. Raises InputError."""
-    from robokin.cli.arguments import parse_numbers
-
-    values = []
-    for text, option, angle, factor, own in (
-        (tol, "--tol", False, units.metres, default.position),
-        (tol_angle, "--tol-angle", True, units.radians, default.angle),
-    ):
-        if text is None:
-            values.append(own)
-            continue
-        (value,) = parse_numbers(text, option, [angle], units, "an angle" if angle else "a length")
-        if value < 0.0:
-            raise InputError(f"{option}: found {shown(text)}, expected 0 or more")
-        values.append(float(value * factor))
-    relative = 0.0 if rtol is None else plain_number(rtol, "--rtol")
-    return replace(default, position=values[0], angle=values[1], relative=relative)
-
-
-def one_source(options: dict[str, object], input: str | None, key: str | None) -> None:
-    """Raise InputError where answers come from options and from a file."""
-    given = [name for name, value in options.items() if value]
-    if input is not None and given:
-        raise InputError(f"--input and {given[0]} exclude each other, expected one of them")
-    if input is None and key is not None:
-        raise InputError("--key goes with --input, the file of the answers")
-    if input == "-" == key:
-        raise InputError("--input and --key are both standard input, expected a file for one of them")

@@ -17,29 +17,32 @@ from robokin.units import Units
 
 
 def configurations(
-    robot: Robot, units: Units, q: list[str] | None, input: str | None, carried: Carried
+    robot: Robot, units: Units, q: list[str] | None, input: str | None, carried: Carried, *, still: bool = False
 ) -> tuple[Iterable[Array], bool, bool]:
     """Blocks of configurations (m, n) in the units, whether they are a stream, and whether there is just one.
 
-    Raises InputError for options that contradict each other, or say nothing.
+    `still`: whether a robot that has no joints has an answer, without a configuration. Raises InputError for options
+    that contradict each other, or say nothing.
     """
-    if not robot.n:
+    if not robot.n and not still:
         raise InputError(f"{robot.name} has no joints, expected a robot that can move")
     if input is not None and q:
         raise InputError("--input and --q exclude each other, expected one of them")
     source = input if input is not None else "-" if q == ["-"] else None
+    if source is not None and not robot.n:
+        raise InputError(f"{robot.name} has no joints and one pose, expected no configurations to read")
     if source is not None:
         return read_configurations(source, robot, units, carried), True, False
-    if not q:
+    if not q and robot.n:
         example = ",".join(["0"] * robot.n)
         raise InputError(
             f"--q is missing, expected {robot.n} values, one for each joint of {robot.name} ({robot.types}), "
             f"such as --q {example}; --q - reads standard input"
         )
-    if "-" in q:
+    if q and "-" in q:
         raise InputError("--q - stands for all configurations on standard input, expected no other --q beside it")
-    given = np.array([parse_configuration(text, robot, units) for text in q])
-    if not all(text.strip() in robot.poses for text in q):
+    given = np.array([parse_configuration(text, robot, units) for text in q or [""]])
+    if not all(text.strip() in robot.poses for text in q or [""]):
         say_unit(robot, units, given)
     return [given], False, len(given) == 1
 

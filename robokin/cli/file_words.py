@@ -11,8 +11,8 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 
-from robokin.cli.submissions import ENDINGS
 from robokin.errors import InputError, shown
+from robokin.grading.answers.submissions import ENDINGS
 
 FLAGS = ("--json", "--follow", "--help", "-h")
 """Options of the command that take no value."""

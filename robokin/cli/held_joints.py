@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from robokin.cli.answer_families import joined
-from robokin.cli.arguments import joint_factors, parse_numbers
-from robokin.cli.output.numbers import show
+from robokin.cli.arguments import parse_numbers
 from robokin.errors import InputError, did_you_mean
 from robokin.inverse.hold import held_inside
 from robokin.model import Robot
+from robokin.model.joint_units import joint_factors
+from robokin.number_text import show
 from robokin.units import Units
 
 OPTION = "--hold"
@@ -45,16 +45,6 @@ def parse_hold(texts: Sequence[str], robot: Robot, units: Units, limits: bool) -
     if held and len(held) == robot.n:
         raise InputError(f"{OPTION}: all {robot.n} joints are held, expected at least one that can move")
     return held
-
-
-def in_words(held: Mapping[int, float]) -> str:
-    """`q3 held at 20`, or nothing; joints from 0, values in the units."""
-    if not held:
-        return ""
-    at = {joint: show(value) for joint, value in sorted(held.items())}
-    if len(set(at.values())) == 1 and len(at) > 1:
-        return f"{joined([f'q{joint + 1}' for joint in at])} held at {next(iter(at.values()))}"
-    return joined([f"q{joint + 1} held at {value}" for joint, value in at.items()])
 
 
 def _joint(name: str, robot: Robot) -> int:

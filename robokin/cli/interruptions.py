@@ -12,6 +12,7 @@ import signal
 import sys
 
 from robokin.cli.statuses import say
+from robokin.unfinished_work import UNFINISHED, in_order, remove
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:  # this module comes first of all and must be quick
@@ -20,13 +21,8 @@ if TYPE_CHECKING:  # this module comes first of all and must be quick
 
 NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
 
-UNFINISHED: set[str] = set()
-"""Paths of files under a temporary name: they are removed whatever happens."""
-
 
 class _State:
-    depth = 0
-    """How many `in_order` there are around what is done now."""
     asked = 0
     """The number of the first signal that asked for the end; 0 for none."""
 
@@ -45,36 +41,6 @@ def too_late() -> None:
         signal.pthread_sigmask(signal.SIG_BLOCK, _numbers())
 
 
-class in_order:  # noqa: N801 - read as `with in_order():`
-    """Here a request to end goes up as KeyboardInterrupt or SystemExit, for there is something to put in order."""
-
-    def __enter__(self) -> None:
-        """Begin."""
-        _State.depth += 1
-
-    def __exit__(self, *error: object) -> None:
-        """End."""
-        _State.depth -= 1
-
-
-class unfinished(in_order):  # noqa: N801 - as above
-    """A file that must not stay under this name after the end."""
-
-    def __init__(self, path: str) -> None:
-        self.path = path
-
-    def __enter__(self) -> None:
-        """From here on the file may be there."""
-        UNFINISHED.add(self.path)
-        super().__enter__()
-
-    def __exit__(self, *error: object) -> None:
-        """Remove it, if it is still there."""
-        super().__exit__(*error)
-        _remove(self.path)
-        UNFINISHED.discard(self.path)
-
-
 def leave_if_asked() -> None:
     """End the program if there was a request."""
     if _State.asked:
@@ -84,17 +50,10 @@ def leave_if_asked() -> None:
 def _leave() -> NoReturn:
     """End the program now, whatever else is going on; no unfinished file is left."""
     for path in [*UNFINISHED]:
-        _remove(path)
+        remove(path)
     if _State.asked == signal.SIGINT:
         say("interrupted")
     os._exit(128 + _State.asked)
-
-
-def _remove(path: str) -> None:
-    try:
-        os.unlink(path)  # noqa: PTH108 - pathlib is not loaded here
-    except OSError:
-        return
 
 
 def _numbers() -> list[signal.Signals]:
@@ -104,7 +63,7 @@ def _numbers() -> list[signal.Signals]:
 
 def _end(number: int, frame: FrameType | None) -> None:
     again, _State.asked = bool(_State.asked), _State.asked or number
-    if again or not _State.depth:
+    if again or not in_order.depth:
         _leave()
     if number == signal.SIGINT:
         raise KeyboardInterrupt

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Callable
+from typing import Annotated, Any
 
 import typer
 
 from robokin.cli.completion import robots, words
-from robokin.errors import InputError, did_you_mean, or_list
+from robokin.errors import InputError, did_you_mean, or_list, shown
 from robokin.units import METRES, RADIANS, Units
 
 FORMATS = ("table", "json", "jsonl", "csv")
 ORIENTATIONS = ("rpy", "quaternion", "euler", "matrix")
+
+
+def option(names: str, metavar: str, help: str, complete: Callable[[str], list[str]] | None = None) -> Any:
+    """An option that takes a text: its names with blanks between, what the help calls the text, what a shell offers."""
+    return typer.Option(*names.split(), metavar=metavar, help=help, autocompletion=complete)
+
 
 RobotArgument = Annotated[
     str,
@@ -23,46 +30,30 @@ RobotArgument = Annotated[
     ),
 ]
 FormatOption = Annotated[
-    str | None,
-    typer.Option(
-        "--format",
-        "-f",
-        metavar="FORMAT",
-        help="table, json, jsonl or csv.  [default: table]",
-        autocompletion=words(*FORMATS),
-    ),
+    str | None, option("--format -f", "FORMAT", "table, json, jsonl or csv.  [default: table]", words(*FORMATS))
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Short for -f json.", show_default=False)]
-AngleOption = Annotated[
-    str | None,
-    typer.Option("--angle", metavar="UNIT", help="Angles in deg or rad, in and out.", autocompletion=words(*RADIANS)),
-]
+AngleOption = Annotated[str | None, option("--angle", "UNIT", "Angles in deg or rad, in and out.", words(*RADIANS))]
 LengthOption = Annotated[
-    str | None,
-    typer.Option(
-        "--length", metavar="UNIT", help="Lengths in m, cm, mm or in, in and out.", autocompletion=words(*METRES)
-    ),
+    str | None, option("--length", "UNIT", "Lengths in m, cm, mm or in, in and out.", words(*METRES))
 ]
 SetOption = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="NAME=VALUE", help="Override a parameter of the description; repeatable."),
+    list[str] | None, option("--set", "NAME=VALUE", "Override a parameter of the description; repeatable.")
 ]
 OutputOption = Annotated[
-    str | None,
-    typer.Option("--output", "-o", metavar="FILE", help="Write to a file, by its ending: .csv, .jsonl or .json."),
+    str | None, option("--output -o", "FILE", "Write to a file, by its ending: .csv, .jsonl or .json.")
 ]
 ArrayOutputOption = Annotated[
-    str | None,
-    typer.Option("--output", "-o", metavar="FILE", help="Write to a file, by its ending: .csv, .jsonl, .json or .npy."),
+    str | None, option("--output -o", "FILE", "Write to a file, by its ending: .csv, .jsonl, .json or .npy.")
 ]
 AsOption = Annotated[
     str | None,
-    typer.Option(
+    option(
         "--as",
-        metavar="KIND",
-        help="How to say the orientation: rpy, quaternion (w x y z), quaternion-xyzw, euler (Z Y Z), rotvec, abc, wpr "
-        "or matrix.  [default: rpy]",
-        autocompletion=words(*ORIENTATIONS),
+        "KIND",
+        "How to say the orientation: rpy, quaternion (w x y z), quaternion-xyzw, euler (Z Y Z), rotvec, "
+        "abc, wpr or matrix.  [default: rpy]",
+        words(*ORIENTATIONS),
     ),
 ]
 DropOption = Annotated[
@@ -107,3 +98,14 @@ def parameter_overrides(settings: list[str] | None) -> dict[str, str]:
             raise InputError(f"--set: found '{setting}', expected NAME=VALUE")
         overrides[name.strip()] = value.strip()
     return overrides
+
+
+def whole_number(text: str | None, option: str, least: int, most: int, *, grouped: bool = False) -> int | None:
+    """A whole number within bounds, None for none; `grouped` digits may have _ between them. Raises InputError."""
+    if text is None:
+        return None
+    digits = text.strip().replace("_", "") if grouped else text.strip()
+    if not (digits.isascii() and digits.isdecimal() and len(digits) < 25) or not least <= int(digits) <= most:
+        limit = f"of {least} or more" if most >= 2**62 else f"from {least} to {most}"
+        raise InputError(f"{option}: found '{shown(text)}', expected a whole number {limit}")
+    return int(digits)

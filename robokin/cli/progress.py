@@ -8,8 +8,8 @@ import sys
 import threading
 import time
 
-from robokin.cli.interruptions import in_order
 from robokin.jobs.stages import followed
+from robokin.unfinished_work import in_order
 
 PATIENCE = 1.0
 """Seconds of work before the bar appears: what is shorter needs none."""
@@ -38,7 +38,7 @@ class Progress:
     def __exit__(self, *error: object) -> None:
         """Wipe the bar out."""
         if self.shown:
-            self._write("\r\033[K")
+            _write("\r\033[K")
         self.interrupted.__exit__(None, None, None)
 
     def told(self, done: int, total: int) -> None:
@@ -53,10 +53,7 @@ class Progress:
         left = (total - done) / rate if rate else 0.0
         full = round(WIDTH * done / total) if total else WIDTH
         bar = "━" * full + "╌" * (WIDTH - full)
-        self._write(f"\r\033[K{bar} {done:,} of {total:,} {self.noun}, {left:.0f} s left")
-
-    def _write(self, text: str) -> None:
-        _write(text)
+        _write(f"\r\033[K{bar} {done:,} of {total:,} {self.noun}, {left:.0f} s left")
 
 
 class Stages:

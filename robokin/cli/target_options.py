@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, get_type_hints
 
-import typer
+from robokin.cli.option_groups import OptionGroup
+from robokin.cli.options import option
+from robokin.errors import InputError
 
-PoseOption = Annotated[str | None, typer.Option("--pose", metavar="EXPR", help="The target as a transform expression.")]
-MatrixOption = Annotated[
-    str | None, typer.Option("--matrix", metavar="[[..]]|FILE", help="The target as a 4×4 matrix, or a file of one.")
-]
-XyzOption = Annotated[
-    str | None, typer.Option("--xyz", metavar="X,Y,Z", help="The target's position; alone: any orientation.")
-]
-RpyOption = Annotated[str | None, typer.Option("--rpy", metavar="R,P,Y", help="With --xyz: roll, pitch, yaw.")]
-EulerOption = Annotated[
-    str | None, typer.Option("--euler", metavar="PHI,THETA,PSI", help="With --xyz: ZYZ Euler angles.")
-]
-QuatOption = Annotated[
-    str | None, typer.Option("--quat", metavar="W,X,Y,Z", help="With --xyz: a quaternion of length 1.")
-]
-ApproachOption = Annotated[
-    str | None, typer.Option("--approach", metavar="X,Y,Z", help="With --xyz: the tool's z axis only, any roll.")
-]
-XyOption = Annotated[str | None, typer.Option("--xy", metavar="X,Y", help="The position for a planar arm.")]
-PhiOption = Annotated[
-    str | None, typer.Option("--phi", metavar="PHI", help="With --xy: the angle of the end effector.")
-]
+PoseOption = Annotated[str | None, option("--pose", "EXPR", "The target as a transform expression.")]
+MatrixOption = Annotated[str | None, option("--matrix", "[[..]]|FILE", "The target as a 4×4 matrix, or a file of one.")]
+XyzOption = Annotated[str | None, option("--xyz", "X,Y,Z", "The target's position; alone: any orientation.")]
+RpyOption = Annotated[str | None, option("--rpy", "R,P,Y", "With --xyz: roll, pitch, yaw.")]
+EulerOption = Annotated[str | None, option("--euler", "PHI,THETA,PSI", "With --xyz: ZYZ Euler angles.")]
+QuatOption = Annotated[str | None, option("--quat", "W,X,Y,Z", "With --xyz: a quaternion of length 1.")]
+ApproachOption = Annotated[str | None, option("--approach", "X,Y,Z", "With --xyz: the tool's z axis only, any roll.")]
+XyOption = Annotated[str | None, option("--xy", "X,Y", "The position for a planar arm.")]
+PhiOption = Annotated[str | None, option("--phi", "PHI", "With --xy: the angle of the end effector.")]
 
 
 def target_texts(
@@ -38,3 +28,32 @@ def target_texts(
         "--pose": pose, "--matrix": matrix, "--xyz": xyz, "--rpy": rpy, "--euler": euler, "--quat": quat,
         "--approach": approach, "--xy": xy, "--phi": phi,
     }  # fmt: skip
+
+
+class TargetOptions(OptionGroup):
+    """A target by one of --pose, --matrix, --xyz and --xy, and what goes with them."""
+
+    pose: PoseOption = None
+    matrix: MatrixOption = None
+    xyz: XyzOption = None
+    rpy: RpyOption = None
+    euler: EulerOption = None
+    quat: QuatOption = None
+    approach: ApproachOption = None
+    xy: XyOption = None
+    phi: PhiOption = None
+
+    @property
+    def texts(self) -> dict[str, str | None]:
+        """What was typed, by the options' names, as `parse_target` reads it."""
+        return {f"--{name}": getattr(self, name) for name in get_type_hints(type(self))}
+
+    @property
+    def given(self) -> list[str]:
+        """The options that were typed."""
+        return [name for name, text in self.texts.items() if text is not None]
+
+    def exclude(self, option: str, value: object) -> None:
+        """Raise InputError where an option that takes a target's place was typed beside one."""
+        if value is not None and self.given:
+            raise InputError(f"{option} and {self.given[0]} exclude each other, expected one of them")

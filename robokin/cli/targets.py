@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
-import json
 import math
 from dataclasses import dataclass
 
@@ -14,27 +11,15 @@ from robokin.arrays import Array
 from robokin.cli.arguments import parse_numbers, split_vector
 from robokin.cli.statuses import say
 from robokin.errors import ExpressionError, InputError
-from robokin.files import open_input, read_up_to
 from robokin.formats.number_expressions import Scope
-from robokin.formats.printed_matrices import pose_from_matrix
 from robokin.formats.transform_expressions import evaluate_transform
+from robokin.kinematics.flat_arm import flat_arm, planar_pose, upright_tool
 from robokin.model import Robot
-from robokin.spatial import (
-    rotation_from_euler,
-    rotation_from_quaternion,
-    rotation_from_rpy,
-    transform,
-)
+from robokin.spatial import rotation_from_euler, rotation_from_quaternion, rotation_from_rpy, transform
 from robokin.spatial.rotations import DIGITS_LOST
 from robokin.tables.pose_columns import near_enough
-from robokin.tables.target_rows import one_pose, pose_of
+from robokin.tables.pose_files import pose_in_file, pose_in_json
 from robokin.units import Units
-
-MOST_OF_A_MATRIX = 1 << 20
-"""Bytes of a file with one pose: a page, were it written with a thousand digits."""
-
-LEVEL = 1e-9
-"""Metres, and sines of an angle: what differs by less lies at one height."""
 
 
 @dataclass(frozen=True)
@@ -119,19 +104,6 @@ def parse_place(text: str, option: str, robot: Robot, units: Units) -> Array:
     return parse_numbers(text, option, [False] * 3, units, f"x, y, z{also}") * units.metres
 
 
-def flat_arm(robot: Robot) -> Array | None:
-    """The pose (4, 4) [m] at zero of a planar arm that moves in the plane of x and y, None for all others."""
-    from robokin.kinematics.forward import forward_kinematics
-    from robokin.kinematics.structure import structure_of
-
-    if structure_of(robot).arm != "planar":
-        return None
-    # The arm's height and the tilt of its end effector are the same at every configuration.
-    zero, ones = forward_kinematics(robot, np.array([np.zeros(robot.n), np.ones(robot.n)]))
-    tilted = abs(zero[2, 3] - ones[2, 3]) > LEVEL or np.max(np.abs(zero[2, :3] - ones[2, :3])) > LEVEL
-    return None if tilted else zero
-
-
 def _planar(text: str, phi: str | None, robot: Robot, units: Units) -> Target:
     from robokin.kinematics.structure import structure_of
 
@@ -140,20 +112,22 @@ def _planar(text: str, phi: str | None, robot: Robot, units: Units) -> Target:
     zero = flat_arm(robot)
     if zero is None:
         raise InputError(f"--xy: {robot.name} does not move in the plane of x and y, expected --xyz")
-    x, y = parse_numbers(text, "--xy", [False] * 2, units, "x, y") * units.metres
-    p = np.array([x, y, zero[2, 3]])
+    place = parse_numbers(text, "--xy", [False] * 2, units, "x, y") * units.metres
     if phi is None:
-        return Target(_placed(zero[:3, :3], p, "--xy", units), "position")
+        return Target(_near(planar_pose(zero, place, None), "--xy", units), "position")
     (angle,) = parse_numbers(phi, "--phi", [True], units, "the angle of the tool's x axis to x") * units.radians
-    if np.hypot(zero[0, 0], zero[1, 0]) < LEVEL:
+    if upright_tool(zero):
         raise InputError(f"--phi: the x axis of {robot.name}'s tool frame is upright, expected --xyz and --rpy")
-    turn = rotation_from_rpy([0.0, 0.0, angle - np.arctan2(zero[1, 0], zero[0, 0])])
-    return Target(_placed(turn @ zero[:3, :3], p, "--xy", units), "pose")
+    return Target(_near(planar_pose(zero, place, angle), "--xy", units), "pose")
 
 
 def _placed(R: Array, p: Array, option: str, units: Units) -> Array:
+    return _near(transform(R, p), option, units)
+
+
+def _near(T: Array, option: str, units: Units) -> Array:
     try:
-        return near_enough(transform(R, p), units)
+        return near_enough(T, units)
     except ValueError as error:
         raise InputError(f"{option}: {error}") from None
 
@@ -162,41 +136,7 @@ def _matrix(text: str, units: Units) -> Target:
     inline = text.lstrip().startswith(("[", "{"))
     name = "--matrix" if inline else f"--matrix {text}"
     try:
-        T, note = _document(text, name, units) if inline else _matrix_file(text, name, units)
+        T, note = pose_in_json(text, name, units) if inline else pose_in_file(text, name, units, say)
     except ValueError as error:
         raise InputError(f"{name}: {error}") from None
     return Target(T, "pose", (note,) if note else ())
-
-
-def _document(text: str, name: str, units: Units) -> tuple[Array, str]:
-    try:
-        document = json.loads(text)
-    except (ValueError, RecursionError):
-        raise InputError(f"{name}: this is not JSON, expected [[…], […], […], […]]") from None
-    T, task, note = pose_of(document, units)
-    if task != "pose":
-        raise ValueError(f"found a target of the task {task}, expected a whole pose")
-    return T, note
-
-
-def _matrix_file(source: str, name: str, units: Units) -> tuple[Array, str]:
-    """A file of one pose: an array, JSON, rows of numbers, or a CSV with a header, as `fk` and `frame` write them."""
-    expected = "[[…], …] or a file with a 4×4 matrix"
-    with open_input(source, expected) as (stream, place):
-        data = read_up_to(stream, place, MOST_OF_A_MATRIX, expected)
-    if len(data) > MOST_OF_A_MATRIX:
-        raise InputError(f"{name}: found more than 1 MiB, expected {expected}")
-    if not data.startswith(b"\x93NUMPY"):
-        try:
-            text = data.decode().removeprefix("\ufeff")
-        except UnicodeDecodeError:
-            raise InputError(f"{name}: found bytes that are no text, expected 4 rows of 4 numbers") from None
-        if text.lstrip().startswith(("[", "{")):
-            return _document(text, name, units)
-        lines = [line.replace(",", " ").split() for line in text.splitlines() if line.strip(" \t,")]
-        with contextlib.suppress(ValueError):
-            rows = [[float(cell) for cell in line] for line in lines if not line[0].startswith("#")]
-            if len(rows) != 1:
-                T, note = pose_from_matrix(rows, units)
-                return near_enough(T, units), note
-    return one_pose(io.BytesIO(data), place, source, units, say), ""

@@ -14,8 +14,8 @@ from robokin.derivation.angle_sums import Function
 from robokin.derivation.symbol_names import Names, quarters_of
 from robokin.derivation.symbol_sums import ONE, ZERO, negative, symbols_of
 from robokin.derivation.symbolic_product import EXACT, Element, Matrix, SymbolicShift, Tilt, Turn, Vector, product, tilt
-from robokin.kernel.chain import z_to
 from robokin.model import Joint, JointType, Robot
+from robokin.spatial import z_to
 from robokin.spatial.rotations import cos_sin
 from robokin.units import Units
 
@@ -91,8 +91,7 @@ def _motion(row: Joint, i: int, names: Names) -> list[Element]:
     """The motion of a row about or along its axis."""
     if not row.moves:
         return []
-    x, y, z = (0.0, 0.0, 1.0) if row.axis is None else (float(part) for part in row.axis)
-    to_axis = z_to((x, y, z))[:3, :3]
+    to_axis = z_to([0.0, 0.0, 1.0] if row.axis is None else row.axis)[:3, :3]
     turns = row.type is JointType.REVOLUTE
     motion = Turn(names.turn(row, i)) if turns else SymbolicShift((ZERO, ZERO, names.variable(row, i)))
     return [tilt(to_axis.tolist()), motion, tilt(to_axis.T.tolist())]

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.errors import InputError, did_you_mean, or_list, shown
+from robokin.errors import InputError, did_you_mean, shown
 from robokin.formats.description_head import Head
 from robokin.formats.gear_ratios import GEARED, gearing_of
 from robokin.formats.link_lengths import LinkShape, assembled_joints, links_of, mode_of, placed, value_of
@@ -22,11 +22,13 @@ from robokin.formats.node_values import (
     list_of,
     number_of,
     raw_number_of,
+    refuse_keys_of_others,
     rounding_of,
     roundings_of,
     text_of,
+    type_of,
     vector_of,
-    whole_number_of,
+    whole_numbers_of,
 )
 from robokin.formats.plausibility import notes_on
 from robokin.formats.schema import EXPECTED, FREEDOMS, MAX_ROWS, MECHANISM_JOINT, ONE_CONSTRAINT, SPACES
@@ -61,7 +63,7 @@ def read_mechanism(head: Head, mode: int | None = None) -> Mechanism:
         ground = attempt(ground, _link, fields["ground"], links, "the ground")
     joints, cells = attempt(([], []), _joints, fields["joints"], space, links, context)
     output = attempt("", _output, fields["output"], links, ground) if "output" in fields else ""
-    expected = attempt({}, _expected, fields["expected"], context) if "expected" in fields else {}
+    expected = attempt({}, whole_numbers_of, fields["expected"], EXPECTED, context) if "expected" in fields else {}
     context.faults.stop()
     assert space is not None  # else there was a mistake
     # How links fit together is asked only of links and joints that are right.
@@ -169,14 +171,6 @@ def _value(node: Node, joint: MechanismJoint, space: str, context: Context) -> f
     return value_of(node, joint.type, f"of joint {shown(joint.name)}", context)
 
 
-def _expected(node: Node, context: Context) -> dict[str, int]:
-    """What the source says of the mechanism's freedoms."""
-    cells = fields_of(node, EXPECTED, "what is expected", context.faults)
-    return {
-        key: context.faults.attempt(0, whole_number_of, cell, context, f"expected {key}") for key, cell in cells.items()
-    }
-
-
 def _joint(
     cells: MappingType[str, Node], name: str, stated: str | None, links: tuple[str, ...], context: Context
 ) -> MechanismJoint | None:
@@ -185,7 +179,7 @@ def _joint(
     before = context.faults.count
     where = f"of joint {shown(name)}"
     space = stated or "planar"  # where a point may have two numbers or three
-    kind = attempt(None, _type, cells["type"], where)
+    kind = attempt(None, type_of, cells["type"], MECHANISM_JOINT["type"].choices, OTHER_NAMES, where)
     joined = attempt((), _joined, cells["links"], links, where, context)
     if kind == "rolling" and space != "planar":
         context.faults.add(
@@ -194,13 +188,8 @@ def _joint(
                 "use type custom with freedoms"
             )
         )
-    for key, owners in OWN_KEYS.items():
-        if kind is not None and key in cells and kind not in owners:
-            context.faults.add(
-                cells[key].mark.error(
-                    f"found '{key}' {where}, a {kind} joint, expected it only on type {or_list(owners)}"
-                )
-            )
+    if kind is not None:
+        refuse_keys_of_others(cells, OWN_KEYS, kind, "joint", where, context)
     at = attempt(None, _at, cells["at"], space, where, context) if "at" in cells else None
     pitch = attempt(0.0, _pitch, cells, where, context)
     actuated = attempt(False, flag_of, cells["actuated"], f"actuated {where}") if "actuated" in cells else False
@@ -238,15 +227,6 @@ def _joined(node: Node, links: tuple[str, ...], where: str, context: Context) ->
     if len(set(joined)) < len(joined):
         raise node.mark.error(f"found a link twice in the links {where}, expected different links")
     return joined
-
-
-def _type(node: Node, where: str) -> str:
-    """The type of a joint; what other books call it is answered with our word."""
-    choices = MECHANISM_JOINT["type"].choices
-    text = text_of(node, f"the type {where}: {or_list(choices)}")
-    if text.casefold() in OTHER_NAMES:
-        raise node.mark.error(f"found '{shown(text)}' as the type {where}, expected {OTHER_NAMES[text.casefold()]}")
-    return choice_of(node, choices, f"the type {where}")
 
 
 def _rounding(cells: MappingType[str, Node], count: int, where: str, context: Context) -> Rounding:

@@ -149,6 +149,36 @@ def whole_number_of(node: Node, context: Context, what: str) -> int:
     return int(number)
 
 
+def whole_numbers_of(node: Node, fields: Fields, context: Context) -> dict[str, int]:
+    """What a description says that the answer is: whole numbers, by their keys."""
+    cells = fields_of(node, fields, "what is expected", context.faults)
+    return {
+        key: context.faults.attempt(0, whole_number_of, cell, context, f"expected {key}") for key, cell in cells.items()
+    }
+
+
+def type_of(node: Node, choices: tuple[str, ...], other_names: MappingType[str, str], where: str) -> str:
+    """One of some types; what other books call it is answered with our word."""
+    text = text_of(node, f"the type {where}: {or_list(choices)}")
+    if text.casefold() in other_names:
+        raise node.mark.error(f"found '{shown(text)}' as the type {where}, expected {other_names[text.casefold()]}")
+    return choice_of(node, choices, f"the type {where}")
+
+
+def refuse_keys_of_others(
+    cells: MappingType[str, Node], owners: MappingType[str, tuple[str, ...]], kind: str, noun: str, where: str,
+    context: Context,
+) -> None:  # fmt: skip
+    """Gather a mistake for each key that belongs to other types of what the noun says."""
+    for key, types in owners.items():
+        if key in cells and kind not in types:
+            context.faults.add(
+                cells[key].mark.error(
+                    f"found '{key}' {where}, a {kind} {noun}, expected it only on type {or_list(types)}"
+                )
+            )
+
+
 def rounding_of(node: Node, context: Context, what: str) -> float:
     """How far a number in the units of the file may be off, as it is written. The number has been read before."""
     return evaluate(expression_text(node, what), context.scope).rounding

@@ -19,7 +19,6 @@ from robokin.arrays import Array
 from robokin.errors import ExpressionError, did_you_mean, shown
 from robokin.formats.number_expressions import MAX_NESTING, Parser, Scope, names_parameters
 from robokin.formats.printed_matrices import ROUNDING, pose_from_matrix
-from robokin.kernel.dh import modified_dh, standard_dh
 from robokin.spatial import (
     invert,
     rotation_from_euler,
@@ -31,6 +30,7 @@ from robokin.spatial import (
     transform,
     translation_transform,
 )
+from robokin.spatial.dh import modified_dh, standard_dh
 from robokin.spatial.rotations import DIGITS_LOST, ZERO_AXIS
 from robokin.units import Units
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping as MappingType
 from dataclasses import replace
 
-from robokin.errors import or_list, shown
+from robokin.errors import shown
 from robokin.formats.description_head import Head
 from robokin.formats.node_values import (
     Context,
@@ -15,9 +15,11 @@ from robokin.formats.node_values import (
     flag_of,
     list_of,
     number_of,
+    refuse_keys_of_others,
     text_of,
+    type_of,
     vector_of,
-    whole_number_of,
+    whole_numbers_of,
 )
 from robokin.formats.plausibility import notes_on
 from robokin.formats.schema import BASE_EXPECTED, MAX_ROWS, STEERINGS, WHEEL, WHEEL_TYPES
@@ -44,7 +46,7 @@ def read_wheeled(head: Head) -> WheeledBase:
     parallel = False
     if "steering" in fields:
         parallel = attempt(False, _steering, fields["steering"], wheels)
-    expected = attempt({}, _expected, fields["expected"], context) if "expected" in fields else {}
+    expected = attempt({}, whole_numbers_of, fields["expected"], BASE_EXPECTED, context) if "expected" in fields else {}
     context.faults.stop()
     assert wheels is not None  # else there was a mistake
     base = WheeledBase(
@@ -101,14 +103,9 @@ def _wheel(node: Node, i: int, context: Context) -> Wheel | None:
     cells = fields_of(node, WHEEL, f"wheel {i}", context.faults)
     name = attempt(str(i), text_of, cells["name"], f"the name of wheel {i}") if "name" in cells else str(i)
     where = f"of wheel {shown(name)}"
-    kind = attempt(None, _type, cells["type"], where)
-    for key, owners in OWN_KEYS.items():
-        if kind is not None and key in cells and kind not in owners:
-            context.faults.add(
-                cells[key].mark.error(
-                    f"found '{key}' {where}, a {kind} wheel, expected it only on type {or_list(owners)}"
-                )
-            )
+    kind = attempt(None, type_of, cells["type"], WHEEL_TYPES, OTHER_NAMES, where)
+    if kind is not None:
+        refuse_keys_of_others(cells, OWN_KEYS, kind, "wheel", where, context)
     x, y = attempt((0.0, 0.0), _place, cells["at"], where, context)
 
     def number(key: str, *, angle: bool) -> float:
@@ -158,19 +155,3 @@ def _roller(cells: MappingType[str, Node], where: str, context: Context) -> floa
             f"found rollers {where} that slip in the direction in which it rolls, expected an angle: {right}"
         )
     return roller
-
-
-def _type(node: Node, where: str) -> str:
-    """The type of a wheel; what other books call it is answered with our word."""
-    text = text_of(node, f"the type {where}: {or_list(WHEEL_TYPES)}")
-    if text.casefold() in OTHER_NAMES:
-        raise node.mark.error(f"found '{shown(text)}' as the type {where}, expected {OTHER_NAMES[text.casefold()]}")
-    return choice_of(node, WHEEL_TYPES, f"the type {where}")
-
-
-def _expected(node: Node, context: Context) -> dict[str, int]:
-    """What the source says of the base's freedoms."""
-    cells = fields_of(node, BASE_EXPECTED, "what is expected", context.faults)
-    return {
-        key: context.faults.attempt(0, whole_number_of, cell, context, f"expected {key}") for key, cell in cells.items()
-    }

@@ -33,9 +33,9 @@ from robokin.inverse.elimination.loop_newton import closing_at
 from robokin.inverse.elimination.padding import Padded, joint_frames_of, padded_chains
 from robokin.inverse.elimination.splits import choose_splits, elimination_of, generic_count, trial_poses
 from robokin.inverse.numeric.pose_error import error_and_jacobian
-from robokin.kernel.chain import Chain, chain_of, chain_size, exact, z_to
+from robokin.kernel.chain import Chain, chain_of, chain_size
 from robokin.model import Robot
-from robokin.spatial import rotation_from_axis_angle, transform
+from robokin.spatial import exact, rotation_from_axis_angle, transform, z_to
 
 Task = Literal["pose", "approach", "position"]
 
@@ -153,7 +153,7 @@ def with_open_joints(chain: Chain, task: Task, roll_first: bool = False) -> tupl
     axes = {"pose": (), "approach": (2,), "position": (2, 1, 0) if roll_first else (0, 1, 2)}[task]
     if not axes:
         return chain, 0
-    frames = [z_to(tuple(float(part) for part in np.eye(3)[axis])) for axis in axes]
+    frames = [z_to(np.eye(3)[axis]) for axis in axes]
     constants = [*chain.constants[:-1], chain.constants[-1] @ frames[0]]
     for before, after in pairwise(frames):
         constants.append(before.T @ after)

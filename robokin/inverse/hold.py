@@ -24,9 +24,8 @@ from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.solution_names import branch_names
 from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution
-from robokin.kernel.chain import row_constants
 from robokin.model import Joint, JointType, Robot
-from robokin.model.robot import LIMIT_TOLERANCE
+from robokin.model.robot import LIMIT_TOLERANCE, row_constants
 from robokin.spatial import rotation_transform
 
 KEPT = 16

@@ -13,7 +13,6 @@ metres away, and lengths of 0.1 m would be differences of such numbers.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -21,16 +20,9 @@ import numpy as np
 from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.kernel.arm_size import axis_path
-from robokin.kernel.dh import modified_dh, standard_dh
-from robokin.model import Joint, JointType, Robot
-from robokin.spatial import invert, rotation_transform
-
-EXACT = 1e-15
-"""An entry of a constant rotation this near to 0 or ±1 is meant to be just that: it is rounding of the
-products of right angles (a few 1e-16). Exact entries cost no arithmetic later."""
-
-HALF_TURN = np.diag([1.0, -1.0, -1.0, 1.0])
-"""F, half a turn about x; its own inverse."""
+from robokin.model import Robot
+from robokin.model.robot import row_constants
+from robokin.spatial import exact, invert
 
 FAR = 2.0
 """Frames that are farther from each other, in the arm's size and added up, than this are moved along their axes to the
@@ -102,43 +94,3 @@ def near_the_arm(chain: Chain) -> Chain:
         if i == 0:
             start -= shift
     return Chain(constants, chain.revolute, chain.offsets, start)
-
-
-def row_constants(row: Joint, convention: str) -> tuple[Array, Array]:
-    """The constant transforms (4, 4) before and after the motion of one row, the motion being along z."""
-    before, after = _constants(row, convention)
-    if row.moves and row.sense < 0:
-        return before @ HALF_TURN, HALF_TURN @ after
-    return before, after
-
-
-def _constants(row: Joint, convention: str) -> tuple[Array, Array]:
-    """The same for a variable that enters with its own sign."""
-    # The variable's own cell is 0 in the row, so that one formula serves every type of row.
-    if convention == "standard":
-        return np.eye(4), standard_dh(row.theta, row.d, row.a, row.alpha)
-    if convention == "modified":
-        return modified_dh(row.alpha, row.a, 0.0, 0.0), standard_dh(row.theta, row.d, 0.0, 0.0)
-    origin = np.eye(4) if row.origin is None else row.origin
-    if row.type is JointType.FIXED or row.axis is None:
-        return origin, np.eye(4)
-    A = z_to(tuple(float(part) for part in row.axis))
-    return exact(origin @ A), invert(A)
-
-
-@lru_cache(maxsize=64)
-def z_to(axis: tuple[float, float, float]) -> Array:
-    """A rotation (4, 4) that takes z to the given axis (x, y, z), of any length but zero."""
-    u = np.array(axis) / np.linalg.norm(axis)
-    normal = np.cross([0.0, 0.0, 1.0], u)
-    angle = np.arctan2(np.linalg.norm(normal), u[2])
-    return exact(rotation_transform(normal if np.any(normal) else [1.0, 0.0, 0.0], angle))
-
-
-def exact(T: Array) -> Array:
-    """T (4, 4) with entries of the rotation that are 0 or ±1 but for rounding made exactly that."""
-    T = T.copy()
-    R = T[:3, :3]
-    whole = np.round(R)
-    T[:3, :3] = np.where(np.abs(R - whole) <= EXACT, whole, R) + 0.0
-    return T

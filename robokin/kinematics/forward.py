@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike
 from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.expected import expect_numbers
-from robokin.kernel.chain import chain_of, exact, row_constants
+from robokin.kernel.chain import chain_of
 from robokin.kernel.columns import BLOCK, ChainPlan, Constant
 from robokin.model import Robot, expect_robot
+from robokin.spatial import exact
 
 
 def forward_kinematics(robot: Robot, q: ArrayLike) -> Array:
@@ -98,13 +99,12 @@ def _joint_segments(constants: Array) -> list[list[Constant]]:
 def _row_segments(robot: Robot, every_row: bool) -> list[list[Constant]]:
     """The constants row by row; a mark after every row, or only after the last row of each link."""
     segments = [[Constant(robot.base, mark=not every_row)]]
-    for row in robot.rows:
-        before, after = row_constants(row, robot.convention)
-        segments[-1].append(Constant(before))
-        if row.moves:
-            segments.append([Constant(exact(after), mark=True)])
+    for joint in robot.graph.joints:
+        segments[-1].append(Constant(joint.before))
+        if joint.moves:
+            segments.append([Constant(exact(joint.after), mark=True)])
         else:
             if not every_row:
                 segments[-1] = [Constant(part.matrix) for part in segments[-1]]
-            segments[-1].append(Constant(after, mark=True))
+            segments[-1].append(Constant(joint.after, mark=True))
     return segments

@@ -35,6 +35,11 @@ class Structure:
         """R = N - M: how many joints could be held without losing anything."""
         return self.joints - self.dimension
 
+    @property
+    def holonomic(self) -> bool:
+        """Whether the joints, each with a drive, suffice for all freedoms of what the arm reaches: N ≥ M."""
+        return self.redundancy >= 0
+
 
 def structure_of(robot: Robot) -> Structure:
     """The structure of a robot."""

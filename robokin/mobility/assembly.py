@@ -11,7 +11,6 @@ from robokin.errors import InputError
 from robokin.mobility.gear_equations import gear_rows
 from robokin.mobility.linkage import Linkage
 from robokin.mobility.linkage_blocks import spread_of
-from robokin.mobility.pins import pairs
 from robokin.mobility.rolling import contact_rows
 from robokin.mobility.screws import Element, elements_of, has_geometry
 from robokin.model import Mechanism, MechanismJoint
@@ -78,7 +77,6 @@ def assembled(mechanism: Mechanism) -> Assembly:
         )
     size = size_of(mechanism)
     middle = _middle(mechanism)
-    ground = mechanism.links.index(mechanism.ground)
     rows: dict[str, tuple[Array, tuple[str, ...]]] = {}
     contacts = [joint for joint in mechanism.joints if joint.type in CONTACTS]
     if contacts:
@@ -97,7 +95,7 @@ def assembled(mechanism: Mechanism) -> Assembly:
         rows = {name: (_spread(found[0], elements, contacts), found[1]) for name, found in rows.items()}
     stacked = np.concatenate([part for part, _ in rows.values()]) if rows else None
     tied = tuple(names for part, names in rows.values() for _ in part)
-    linkage = Linkage(bodies, ground, elements, stacked)
+    linkage = Linkage(bodies, mechanism.graph.root, elements, stacked)
     return Assembly(mechanism, linkage, size, middle, np.array(own, dtype=np.intp), tied)
 
 
@@ -106,24 +104,21 @@ def _elements(
 ) -> tuple[int, list[Element], list[int]]:
     """The number of bodies, the elementary joints but for those of some joints, and whose each freedom is."""
     bodies = len(mechanism.links)
-    number_of = {name: number for number, name in enumerate(mechanism.links)}
     elements: list[Element] = []
     own: list[int] = []
-    joined = pairs([tuple(number_of[name] for name in joint.links) for joint in mechanism.joints])
-    for number, joint in enumerate(mechanism.joints):
-        if joint.name in without:
+    for pair in mechanism.graph.joints:
+        if pair.name in without:
             continue
-        for a, b in joined[number]:
-            before = a
-            parts = elements_of(joint, middle, size)
-            at = None if joint.at is None else (joint.at - middle) / size
-            for k, (screws, labels) in enumerate(parts):
-                after = b
-                if k < len(parts) - 1:
-                    after, bodies = bodies, bodies + 1
-                elements.append(Element(joint.name, before, after, screws, labels, at))
-                own += [number] * len(screws)
-                before = after
+        joint, before = mechanism.joints[pair.row], pair.parent
+        parts = elements_of(joint, middle, size)
+        at = None if joint.at is None else (joint.at - middle) / size
+        for k, (screws, labels) in enumerate(parts):
+            after = pair.child
+            if k < len(parts) - 1:
+                after, bodies = bodies, bodies + 1
+            elements.append(Element(joint.name, before, after, screws, labels, at))
+            own += [pair.row] * len(screws)
+            before = after
     return bodies, elements, own
 
 
@@ -140,17 +135,6 @@ def _middle(mechanism: Mechanism) -> Array:
     """The middle of the joints (3,) [m]: twists about it are of one size."""
     points = [joint.at for joint in mechanism.joints if joint.at is not None]
     return np.mean(points, axis=0) if points else np.zeros(3)
-
-
-def parts_of(mechanism: Mechanism) -> list[tuple[str, ...]]:
-    """The groups of links that joints connect, the ground's first."""
-    groups: list[set[str]] = [{link} for link in mechanism.links]
-    for joint in mechanism.joints:
-        touched = [group for group in groups if group & set(joint.links)]
-        groups = [group for group in groups if group not in touched]
-        groups.append(set().union(*touched))
-    ordered = [tuple(link for link in mechanism.links if link in group) for group in groups]
-    return sorted(ordered, key=lambda group: (mechanism.ground not in group, mechanism.links.index(group[0])))
 
 
 def space_fault(mechanism: Mechanism) -> str | None:

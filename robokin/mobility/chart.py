@@ -17,13 +17,13 @@ a and through the joint, ξ' that on the way to b, they change by
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
 
 from robokin.arrays import Array
 from robokin.mobility.screws import moved_screws
+from robokin.model.topology import topology_of
 
 OUT_OF_PLANE = 1e-12
 """Parts of unit twists below this are rounding."""
@@ -53,13 +53,18 @@ class Chart:
         self.rows = rows
         self.first = np.cumsum([0, *(len(edge.screws) for edge in edges)])
         self._powers = _powers(self.screws)
-        self.bodies, self.order, self.signs, self.chords = _forest(edges, roots)
+        # Bodies are numbered as the edges come to them.
+        numbers = {body: i for i, body in enumerate(dict.fromkeys(body for edge in edges for body in (edge.a, edge.b)))}
+        self.ends = [(numbers[edge.a], numbers[edge.b]) for edge in edges]
+        self.topology = topology_of(len(numbers), self.ends, (numbers[root] for root in roots))
+        self.chords, signs = self.topology.loops, self.topology.signs
         # A column of an edge counts for the bodies beyond it.
         edge_of = np.repeat(np.arange(len(edges)), np.diff(self.first))
         self._there, self._back = np.zeros((2, len(self.chords), self.n))
         for there, back, chord in zip(self._there, self._back, self.chords, strict=True):
-            there += self.signs[self.bodies[edges[chord].a]][edge_of] + (edge_of == chord)
-            back += self.signs[self.bodies[edges[chord].b]][edge_of]
+            a, b = self.ends[chord]
+            there += signs[a][edge_of] + (edge_of == chord)
+            back += signs[b][edge_of]
         out = float(np.max(np.abs(self.screws[:, [2, 3, 4]]), initial=0.0))
         self.planar = out < OUT_OF_PLANE if planar is None else planar
         self._kept = np.array([0, 1, 5]) if self.planar else np.arange(6)
@@ -90,12 +95,12 @@ class Chart:
     def frames(self, q: Array) -> tuple[Array, Array]:
         """Bodies (N, b, 4, 4) and what carries each screw (N, n, 4, 4), at q (N, n)."""
         E = self._exponentials(q)
-        bodies = np.empty((len(q), len(self.bodies), 4, 4))
+        bodies = np.empty((len(q), len(self.topology.root), 4, 4))
         carried = np.empty((len(q), self.n, 4, 4))
         bodies[:] = np.eye(4)
-        for body, number, parent in self.order:
-            forward = self.edges[number].a == parent
-            g = bodies[:, self.bodies[parent]]
+        for body, number, parent in self.topology.steps:
+            forward = self.ends[number][0] == parent
+            g = bodies[:, parent]
             columns = range(self.first[number], self.first[number + 1])
             if not forward:
                 for j in reversed(columns):
@@ -105,10 +110,10 @@ class Chart:
                 for j in columns:
                     carried[:, j] = g
                     g = g @ E[:, j]
-            bodies[:, self.bodies[body]] = g
+            bodies[:, body] = g
         self._ends = []
         for chord in self.chords:
-            g = bodies[:, self.bodies[self.edges[chord].a]]
+            g = bodies[:, self.ends[chord][0]]
             for j in range(self.first[chord], self.first[chord + 1]):
                 carried[:, j] = g
                 g = g @ E[:, j]
@@ -145,7 +150,7 @@ class Chart:
         """The loops' gaps (N, l, 4, 4)."""
         gaps = np.empty((len(bodies), len(self.chords), 4, 4))
         for k, chord in enumerate(self.chords):
-            gaps[:, k] = self._ends[k] @ _inverse(bodies[:, self.bodies[self.edges[chord].b]])
+            gaps[:, k] = self._ends[k] @ _inverse(bodies[:, self.ends[chord][1]])
         return gaps
 
     def _lack(self, q: Array, gaps: Array) -> Array:
@@ -161,41 +166,6 @@ def _powers(screws: Array) -> tuple[Array, Array, Array]:
     X[:, :3, :3] = _skew(screws[:, 3:])
     X[:, :3, 3] = screws[:, :3]
     return X, X @ X, X @ X @ X
-
-
-def _forest(
-    edges: list[ChartEdge], roots: tuple[int, ...]
-) -> tuple[dict[int, int], list[tuple[int, int, int]], Array, list[int]]:
-    """Numbers of the bodies, the forest (body, edge, parent) with parents first, the signs (b, e) with which edges lead
-    to each body, and the edges outside."""
-    touching: dict[int, list[int]] = {}
-    for number, edge in enumerate(edges):
-        touching.setdefault(edge.a, []).append(number)
-        touching.setdefault(edge.b, []).append(number)
-    bodies = {body: i for i, body in enumerate(touching)}
-    signs = np.zeros((len(bodies), len(edges)))
-    order: list[tuple[int, int, int]] = []
-    used: set[int] = set()
-    seen: set[int] = set()
-    for root in roots:
-        if root in seen:
-            continue
-        seen.add(root)
-        waiting = deque([root])
-        while waiting:
-            parent = waiting.popleft()
-            for number in touching[parent]:
-                edge = edges[number]
-                body = edge.b if edge.a == parent else edge.a
-                if body in seen:
-                    continue
-                signs[bodies[body]] = signs[bodies[parent]]
-                signs[bodies[body], number] = 1.0 if edge.a == parent else -1.0
-                order.append((body, number, parent))
-                used.add(number)
-                seen.add(body)
-                waiting.append(body)
-    return bodies, order, signs, [number for number in range(len(edges)) if number not in used]
 
 
 def _inverse(T: Array) -> Array:

@@ -28,7 +28,6 @@ loops in screws; J. M. Hervé, "Analyse structurelle des mécanismes par groupe 
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,6 +35,7 @@ import numpy as np
 from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.mobility.screws import Element, exponential, logarithm, moved_screws
+from robokin.model.topology import topology_of
 from robokin.spatial import invert
 
 CLOSED = 1e-12
@@ -73,12 +73,10 @@ class Linkage:
         counts = [len(e.screws) for e in elements]
         self.joint = np.repeat(np.arange(len(elements)), counts)
         self.body = np.repeat([e.a for e in elements], counts).astype(np.intp)
-        self.paths, self.order = _tree(bodies, ground, elements)
-        tree = {j for _, j, _ in self.order}
-        chords = [j for j in range(len(elements)) if j not in tree]
-        self.chords = chords
-        self.loops = np.zeros((len(chords), len(elements)))
-        for row, j in zip(self.loops, chords, strict=True):
+        topology = topology_of(bodies, [(e.a, e.b) for e in elements], (ground,))
+        self.paths, self.order, self.chords = topology.signs, topology.steps, list(topology.loops)
+        self.loops = np.zeros((len(self.chords), len(elements)))
+        for row, j in zip(self.loops, self.chords, strict=True):
             row += self.paths[elements[j].a] - self.paths[elements[j].b]
             row[j] += 1.0
         self.rows = np.zeros((0, len(self.screws))) if rows is None else rows
@@ -169,28 +167,3 @@ class Linkage:
 def _solve(J: Array, error: Array, rank: float) -> Array:
     """The least step that closes as much as can be closed; what rank says is zero stays unmoved."""
     return np.asarray(np.linalg.lstsq(J, error, rcond=rank)[0])
-
-
-def _tree(bodies: int, ground: int, elements: list[Element]) -> tuple[Array, list[tuple[int, int, int]]]:
-    """Path signs (n, j) and the tree's edges (body, joint, parent), parents first."""
-    paths = np.zeros((bodies, len(elements)))
-    order: list[tuple[int, int, int]] = []
-    touching: list[list[int]] = [[] for _ in range(bodies)]
-    for j, element in enumerate(elements):
-        touching[element.a].append(j)
-        touching[element.b].append(j)
-    seen, waiting = {ground}, deque([ground])
-    while waiting:
-        parent = waiting.popleft()
-        for j in touching[parent]:
-            element = elements[j]
-            forward = element.a == parent
-            body = element.b if forward else element.a
-            if body in seen:
-                continue
-            paths[body] = paths[parent]
-            paths[body, j] = 1.0 if forward else -1.0
-            order.append((body, j, parent))
-            seen.add(body)
-            waiting.append(body)
-    return paths, order

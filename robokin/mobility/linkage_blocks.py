@@ -8,8 +8,6 @@ own. Each block is measured in its own size: a small mechanism far from a large 
 Own spins. A link between two joints of a block can move by itself in every motion that both joints allow, such as a rod
 between two ball joints about its line. In the link's own frame these are the same at all configurations, so they are
 freedoms of their own: held in the chart, and added afterwards.
-
-Source: J. Hopcroft, R. Tarjan, "Efficient algorithms for graph manipulation", Comm. ACM 16(6), 1973 (the components).
 """
 
 from __future__ import annotations
@@ -23,6 +21,7 @@ from robokin.brief import Brief
 from robokin.mobility.chart import Chart, ChartEdge
 from robokin.mobility.linkage import Linkage, LinkageState
 from robokin.mobility.screws import Element, moved_screws
+from robokin.model.topology import components
 from robokin.spatial import transform
 
 SPIN = 1e-9
@@ -65,47 +64,6 @@ def blocks_of(linkage: Linkage) -> list[Block]:
     groups = components([(e.a, e.b) for e in linkage.elements])
     groups = _joined(groups, linkage)
     return [_block(linkage, tuple(sorted(group))) for group in sorted(groups, key=min)]
-
-
-def components(pairs: list[tuple[int, int]]) -> list[set[int]]:
-    """The biconnected components of a graph of edges: sets of their numbers."""
-    touching: dict[int, list[int]] = {}
-    for number, pair in enumerate(pairs):
-        for body in pair:
-            touching.setdefault(body, []).append(number)
-    depth: dict[int, int] = {}
-    low: dict[int, int] = {}
-    found: list[set[int]] = []
-    for root in touching:
-        if root in depth:
-            continue
-        depth[root] = low[root] = 0
-        trail: list[int] = []
-        stack = [(root, -1, iter(touching[root]))]
-        while stack:
-            body, came, edges = stack[-1]
-            for number in edges:
-                if number == came:
-                    continue
-                other = pairs[number][1] if pairs[number][0] == body else pairs[number][0]
-                if other not in depth:
-                    depth[other] = low[other] = depth[body] + 1
-                    trail.append(number)
-                    stack.append((other, number, iter(touching[other])))
-                    break
-                if depth[other] < depth[body]:
-                    trail.append(number)
-                    low[body] = min(low[body], depth[other])
-            else:
-                stack.pop()
-                if stack:
-                    parent = stack[-1][0]
-                    low[parent] = min(low[parent], low[body])
-                    if low[body] >= depth[parent]:
-                        at = trail.index(came)
-                        found.append(set(trail[at:]))
-                        del trail[at:]
-    return found
 
 
 def spread_of(points: Array, otherwise: float, least: float = 0.0) -> float:

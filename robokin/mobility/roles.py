@@ -63,7 +63,7 @@ def idle_freedoms(assembly: Assembly, motion: TrueMobility) -> int:
     if not T.shape[1]:
         return 0
     bodies = linkage.body_twists(motion.state, T)
-    ground = assembly.link(assembly.mechanism.ground)
+    ground = linkage.ground
     groups = [{i} for i in range(len(bodies)) if i != ground]
     groups += [{e.a, e.b} for e in linkage.elements if ground not in (e.a, e.b)]
     spins = np.zeros((T.shape[1], 0))

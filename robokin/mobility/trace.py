@@ -15,7 +15,7 @@ import numpy as np
 from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.errors import InputError, did_you_mean, shown
-from robokin.mobility.assembly import Assembly, assembled, parts_of
+from robokin.mobility.assembly import Assembly, assembled
 from robokin.mobility.linkage import RANK, Linkage, LinkageState
 from robokin.mobility.roles import still_freedoms
 from robokin.mobility.trace_columns import labels_of, of_pins, whole_rotations
@@ -106,7 +106,7 @@ def trace(mechanism: Mechanism, count: int, drive: str | None = None) -> Trace:
 
 def _check_whole(mechanism: Mechanism) -> None:
     """Raise InputError for what is in several pieces."""
-    parts = parts_of(mechanism)
+    parts = mechanism.graph.parts
     if len(parts) > 1:
         raise InputError(f"no joint leads from the ground to {parts[1][0]}, expected a mechanism of one piece")
 

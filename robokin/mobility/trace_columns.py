@@ -7,7 +7,6 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.mobility.assembly import Assembly
 from robokin.mobility.linkage import LinkageState
-from robokin.mobility.pins import from_first, pairs
 from robokin.mobility.screws import logarithm
 
 
@@ -22,12 +21,26 @@ def labels_of(assembly: Assembly, names: list[str]) -> tuple[str, ...]:
 
 def of_pins(assembly: Assembly, values: Array) -> Array:
     """The values (m, f) with those of hinges that pin several links measured from the first link that is listed."""
-    links = [tuple(assembly.mechanism.links.index(name) for name in joint.links) for joint in assembly.mechanism.joints]
-    for number, (own, joined) in enumerate(zip(links, pairs(links), strict=True)):
+    mechanism = assembly.mechanism
+    for number, joint in enumerate(mechanism.joints):
+        joined = [(one.parent, one.child) for one in mechanism.graph.joints if one.row == number]
         (columns,) = np.nonzero(assembly.own == number)
-        if len(own) > 2 and len(columns) == len(joined):
-            values[:, columns] = values[:, columns] @ from_first(own, joined).T
+        if len(joined) > 1 and len(columns) == len(joined):
+            links = tuple(mechanism.links.index(name) for name in joint.links)
+            values[:, columns] = values[:, columns] @ _from_first(links, joined).T
     return values
+
+
+def _from_first(links: tuple[int, ...], joined: list[tuple[int, int]]) -> Array:
+    """The matrix (m - 1, m - 1) from the turns of a pin's pairs to those of its links, in order, against the first."""
+    ways = {links[0]: np.zeros(len(joined))}
+    while len(ways) < len(links):
+        for turn, (a, b) in zip(np.eye(len(joined)), joined, strict=True):
+            if a in ways:
+                ways.setdefault(b, ways[a] + turn)
+            elif b in ways:
+                ways[a] = ways[b] - turn
+    return np.array([ways[link] for link in links[1:]])
 
 
 def whole_rotations(assembly: Assembly, states: list[LinkageState], values: Array) -> Array:

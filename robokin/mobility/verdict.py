@@ -10,7 +10,7 @@ from robokin.arrays import Array
 from robokin.brief import Answer
 from robokin.errors import InputError, InputTypeError, did_you_mean
 from robokin.expected import described, expect_whole
-from robokin.mobility.assembly import Assembly, assembled, missing_geometry, parts_of, space_fault
+from robokin.mobility.assembly import Assembly, assembled, missing_geometry, space_fault
 from robokin.mobility.count import grubler
 from robokin.mobility.nearly import nearly_more
 from robokin.mobility.output import Output, kind_of, twist_basis
@@ -57,6 +57,16 @@ class Mobility(Answer):
     wandering: tuple[str, ...] = ()
     outputs: tuple[Output, ...] = ()
 
+    @property
+    def controllable(self) -> int | None:
+        """How many of the freedoms the actuated joints command; None where that or the mobility is not known."""
+        return None if self.mobility is None or self.undriven is None else self.mobility - self.undriven
+
+    @property
+    def holonomic(self) -> bool | None:
+        """Whether the actuated joints command all freedoms; None where that is not known."""
+        return None if self.controllable is None else self.controllable == self.mobility
+
     def __repr__(self) -> str:
         """A line: the count beside the mobility, and the verdict."""
         name, known = self.mechanism.id or self.mechanism.name, "not known" if self.mobility is None else self.mobility
@@ -74,10 +84,9 @@ def mobility_of(mechanism: Mechanism, between: tuple[str, str] | None = None, se
     if fault:
         raise InputError(fault)
     pair = _between(mechanism, between)
-    freedoms = [joint.freedoms for joint in mechanism.joints for _ in range(joint.multiplicity)]
-    count = grubler(mechanism.order, len(mechanism.links), freedoms)
+    count = grubler(mechanism.order, len(mechanism.links), (joint.freedoms for joint in mechanism.graph.joints))
     missing = missing_geometry(mechanism)
-    parts = parts_of(mechanism)
+    parts = mechanism.graph.parts
     driven = sum(joint.actuated for joint in mechanism.joints)
     if len(parts) > 1:
         note = f"{_loose(mechanism, parts)}: the count adds up parts that move independently"
@@ -97,7 +106,7 @@ def mobility_of(mechanism: Mechanism, between: tuple[str, str] | None = None, se
     return _judged(mechanism, count, assembly, motion, pair, driven)
 
 
-def _loose(mechanism: Mechanism, parts: list[tuple[str, ...]]) -> str:
+def _loose(mechanism: Mechanism, parts: tuple[tuple[str, ...], ...]) -> str:
     """What hangs on nothing, in words."""
     if len(parts[0]) == 1:
         return f"no joint holds the mechanism to its ground, {mechanism.ground}"

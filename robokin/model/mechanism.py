@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
-from robokin.arrays import Array
+from robokin.arrays import Array, read_only
 from robokin.brief import Answer, Brief
 from robokin.errors import Note, shown
 from robokin.expected import expect_kind
 from robokin.model.blueprint import AssemblyMode
+from robokin.model.graph import Graph, GraphJoint
+from robokin.model.pins import pairs
+from robokin.spatial import invert, z_to
 from robokin.units import Units
 
 Space = Literal["planar", "spherical", "spatial"]
@@ -67,9 +71,20 @@ class MechanismJoint(Brief):
         """Make the arrays read-only."""
         for name in ("at", "axes"):
             if getattr(self, name) is not None:
-                array = np.array(getattr(self, name), dtype=np.float64)
-                array.flags.writeable = False
-                object.__setattr__(self, name, array)
+                object.__setattr__(self, name, read_only(getattr(self, name)))
+
+    @property
+    def frame(self) -> Array:
+        """(4, 4) [m] a frame on a hinge, slide or screw with z along its axis; NaN where that is not given, or has no
+        place, and of other joints but fixed ones."""
+        if self.type == "fixed":
+            return np.eye(4)
+        placed = self.at is not None or self.type == "prismatic"
+        if self.type not in ("revolute", "prismatic", "helical") or self.axes is None or not placed:
+            return np.full((4, 4), np.nan)
+        T = z_to(self.axes[0])
+        T[:3, 3] = 0.0 if self.at is None else self.at
+        return T
 
     @property
     def multiplicity(self) -> int:
@@ -121,6 +136,20 @@ class Mechanism(Answer):
         letters = {"fixed": "F", "revolute": "R", "prismatic": "P", "helical": "H", "cylindrical": "C",
                    "universal": "U", "spherical": "S", "planar": "E"}  # fmt: skip
         return "".join(letters.get(joint.type, "G") * joint.multiplicity for joint in self.joints)
+
+    @cached_property
+    def graph(self) -> Graph:
+        """Links and joints of two links, those of more taken apart; every link's frame is the world's as assembled."""
+        numbers = {link: number for number, link in enumerate(self.links)}
+        joined = pairs([tuple(numbers[link] for link in joint.links) for joint in self.joints])
+        joints = []
+        for row, (joint, ends) in enumerate(zip(self.joints, joined, strict=True)):
+            T = joint.frame
+            joints += [
+                GraphJoint(joint.name, joint.type, a, b, joint.freedoms, T, invert(T), joint.pitch, row=row)
+                for a, b in ends
+            ]
+        return Graph(self.links, tuple(joints), self.links.index(self.ground))
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         """Copied and pickled by its fields: the read-only view of a mapping cannot be pickled."""

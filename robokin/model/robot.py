@@ -12,10 +12,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robokin.arrays import Array, Flags
+from robokin.arrays import Array, Flags, read_only
 from robokin.brief import Answer, Brief
 from robokin.errors import InputError, Note, shown
 from robokin.expected import expect_kind, expect_numbers
+from robokin.model.graph import Graph, GraphJoint, Tip
+from robokin.spatial import exact, invert, z_to
+from robokin.spatial.dh import modified_dh, standard_dh
 from robokin.units import Units
 
 Convention = Literal["standard", "modified", "frames"]
@@ -23,6 +26,9 @@ Convention = Literal["standard", "modified", "frames"]
 LIMIT_TOLERANCE = 1e-9
 """A joint value this far [rad | m] outside its limits is still within: limits are inclusive, and a
 value that went through a change of units or a solver lands within rounding of them."""
+
+HALF_TURN = np.diag([1.0, -1.0, -1.0, 1.0])
+"""F, half a turn about x; its own inverse."""
 
 NO_LIMIT = 1e100
 """A limit beyond this [rad | m] is none: volumes made of such ways are no numbers."""
@@ -80,7 +86,7 @@ class Joint(Brief):
             object.__setattr__(self, "limits", limits)
         for name in ("origin", "axis"):
             if getattr(self, name) is not None:
-                object.__setattr__(self, name, _read_only(getattr(self, name)))
+                object.__setattr__(self, name, read_only(getattr(self, name)))
 
     @property
     def moves(self) -> bool:
@@ -121,11 +127,11 @@ class Robot(Answer):
         for name, pose in self.poses.items():
             if np.shape(pose) != (self.n,):
                 raise InputError(f"pose '{name}' has {np.size(pose)} values, expected {self.n}: one a joint")
-        frozen = {name: _read_only(pose) for name, pose in self.poses.items()}
+        frozen = {name: read_only(pose) for name, pose in self.poses.items()}
         object.__setattr__(self, "poses", MappingProxyType(frozen))
         object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
-        object.__setattr__(self, "base", _read_only(self.base))
-        object.__setattr__(self, "tool", _read_only(self.tool))
+        object.__setattr__(self, "base", read_only(self.base))
+        object.__setattr__(self, "tool", read_only(self.tool))
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
@@ -152,12 +158,27 @@ class Robot(Answer):
     @cached_property
     def senses(self) -> Array:
         """(n,) the sign with which each variable enters, 1 or -1."""
-        return _read_only(np.array([float(joint.sense) for joint in self.joints]))
+        return read_only(np.array([float(joint.sense) for joint in self.joints]))
 
     @cached_property
     def limits(self) -> Array:
         """(n, 2) least and greatest value of each joint [rad | m], ±inf where there is none."""
-        return _read_only(np.array([joint.limits for joint in self.joints]).reshape(self.n, 2))
+        return read_only(np.array([joint.limits for joint in self.joints]).reshape(self.n, 2))
+
+    @cached_property
+    def graph(self) -> Graph:
+        """The table as a graph: link 0 has the base's frame, link i the frame after row i; the tip is the tool."""
+        joints = []
+        for i, row in enumerate(self.rows):
+            before, after = row_constants(row, self.convention)
+            zero = row.sense * row.offset
+            joints.append(
+                GraphJoint(
+                    row.name, row.type, i, i + 1, int(row.moves), before, after, zero=zero, limits=row.limits, row=i
+                )
+            )
+        links = ("base", *(str(i + 1) for i in range(len(joints))))
+        return Graph(links, tuple(joints), base=self.base, tips=(Tip("tool", len(joints), self.tool),))
 
     def within_limits(self, q: ArrayLike) -> Flags:
         """(...) whether each q: (..., n) [rad | m] respects every limit; limits are inclusive."""
@@ -188,14 +209,34 @@ def expect_robot(value: object, argument: str = "robot") -> Robot:
     return robot
 
 
+def row_constants(row: Joint, convention: str) -> tuple[Array, Array]:
+    """The constant transforms (4, 4) before and after the motion of one row, the motion being along z.
+
+    A variable that enters with the other sign turns the frame of its joint by half a turn about x, and back:
+    Rot(z, offset - q) = F Rot(z, q - offset) F, and so of a slide.
+    """
+    before, after = _constants(row, convention)
+    if row.moves and row.sense < 0:
+        return before @ HALF_TURN, HALF_TURN @ after
+    return before, after
+
+
+def _constants(row: Joint, convention: str) -> tuple[Array, Array]:
+    """The same for a variable that enters with its own sign."""
+    # The variable's own cell is 0 in the row, so that one formula serves every type of row.
+    if convention == "standard":
+        return np.eye(4), standard_dh(row.theta, row.d, row.a, row.alpha)
+    if convention == "modified":
+        return modified_dh(row.alpha, row.a, 0.0, 0.0), standard_dh(row.theta, row.d, 0.0, 0.0)
+    origin = np.eye(4) if row.origin is None else row.origin
+    if row.type is JointType.FIXED or row.axis is None:
+        return origin, np.eye(4)
+    A = z_to(row.axis)
+    return exact(origin @ A), invert(A)
+
+
 def tolerated(limits: Array) -> tuple[Array, Array]:
     """The least and the greatest values (n,) [rad | m] that count as within limits (n, 2)."""
     size = np.where(np.isfinite(limits), np.abs(limits), 0.0)
     margin = np.maximum(LIMIT_TOLERANCE, LIMIT_ROUNDING * size)
     return limits[:, 0] - margin[:, 0], limits[:, 1] + margin[:, 1]
-
-
-def _read_only(values: ArrayLike) -> Array:
-    array = np.array(values, dtype=np.float64)
-    array.flags.writeable = False
-    return array

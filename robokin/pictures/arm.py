@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.kernel.chain import chain_of, row_constants
+from robokin.kernel.chain import chain_of
 from robokin.kinematics.forward import joint_frames
 from robokin.model import Robot
 
@@ -153,9 +153,8 @@ def _walk(robot: Robot) -> tuple[list[Array], list[Array], list[FrameMark]]:
     T = np.array(robot.base)
     lines, starts = [[T[:3, 3]]], []
     marks = [FrameMark("base", 0, T)]
-    for number, row in enumerate(robot.rows, start=1):
-        before, after = row_constants(row, robot.convention)
-        T = T @ before
+    for number, (row, joint) in enumerate(zip(robot.rows, robot.graph.joints, strict=True), start=1):
+        T = T @ joint.before
         lines[-1].append(T[:3, 3])
         if row.moves:
             starts.append(T)
@@ -165,7 +164,7 @@ def _walk(robot: Robot) -> tuple[list[Array], list[Array], list[FrameMark]]:
             # A link of a table runs along the joint's axis, then across it: its corner is drawn.
             # The frame of a joint whose variable has the other sign has its z axis the other way.
             lines[-1].append(T[:3, 3] + (row.sense if row.moves else 1) * row.d * T[:3, 2])
-        T = T @ after
+        T = T @ joint.after
         lines[-1].append(T[:3, 3])
         marks.append(FrameMark(str(number), len(lines) - 1, T))
     T = T @ robot.tool

@@ -166,12 +166,7 @@ def singular() -> Schema:
 
 def path() -> Schema:
     """Documents of `robokin path`."""
-    row = {
-        "t": number("Time from 0 to 1 [1].", 0.0),
-        "q": Q,
-        "position": POSITION,
-        "rpy": RPY,
-    }
+    row = {"t": number("Time from 0 to 1 [1].", 0.0), "q": Q, "position": POSITION, "rpy": RPY}
     event = record(
         "Something on the way.",
         {

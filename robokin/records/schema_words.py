@@ -92,10 +92,7 @@ def maybe(schema: Schema, when: str) -> Schema:
 
 UNITS = record(
     "The units of the document's quantities.",
-    {
-        "length": word("Unit of lengths.", "m", "cm", "mm", "in"),
-        "angle": word("Unit of angles.", "rad", "deg"),
-    },
+    {"length": word("Unit of lengths.", "m", "cm", "mm", "in"), "angle": word("Unit of angles.", "rad", "deg")},
 )
 
 

@@ -23,17 +23,20 @@ from robokin.spatial.rotations import (
 )
 from robokin.spatial.transforms import (
     compose,
+    exact,
     invert,
     map_point,
     rotation_transform,
     transform,
     translation_transform,
+    z_to,
 )
 
 __all__ = [
     "axis_angle_from_rotation",
     "compose",
     "euler_from_rotation",
+    "exact",
     "invert",
     "map_point",
     "nearest_rotation",
@@ -51,4 +54,5 @@ __all__ = [
     "rpy_from_rotation",
     "transform",
     "translation_transform",
+    "z_to",
 ]

@@ -6,7 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
-from robokin.spatial.rotations import rotation_from_axis_angle
+from robokin.spatial.rotations import ZERO_AXIS, rotation_from_axis_angle
+
+EXACT = 1e-15
+"""An entry of a constant rotation this near to 0 or ±1 is meant to be just that: it is rounding of the
+products of right angles (a few 1e-16). Exact entries cost no arithmetic later."""
 
 FARTHEST = 1e12
 """Metres: no arm reaches that far, and the squares of what is much farther are no numbers."""
@@ -51,3 +55,24 @@ def map_point(T_a_b: ArrayLike, point_b: ArrayLike) -> Array:
     """Points (..., 3) given in frame b, in the coordinates of frame a: R p + o."""
     T_a_b, point_b = np.asarray(T_a_b, dtype=np.float64), np.asarray(point_b, dtype=np.float64)
     return np.asarray((T_a_b[..., :3, :3] @ point_b[..., None])[..., 0] + T_a_b[..., :3, 3])
+
+
+def z_to(axis: ArrayLike) -> Array:
+    """A rotation (4, 4) that takes z to the given axis (3,), of any length but zero."""
+    u = np.array(axis, dtype=np.float64)
+    u /= np.linalg.norm(u)
+    normal = np.cross([0.0, 0.0, 1.0], u)
+    sine = float(np.linalg.norm(normal))
+    angle = np.arctan2(sine, u[2])
+    if sine < ZERO_AXIS:  # next to z, or to its opposite
+        normal = normal / sine if sine else np.array([1.0, 0.0, 0.0])
+    return exact(rotation_transform(normal, angle))
+
+
+def exact(T: Array) -> Array:
+    """T (4, 4) with entries of the rotation that are 0 or ±1 but for rounding made exactly that."""
+    T = T.copy()
+    R = T[:3, :3]
+    whole = np.round(R)
+    T[:3, :3] = np.where(np.abs(R - whole) <= EXACT, whole, R) + 0.0
+    return T

@@ -16,7 +16,8 @@ from robokin.arrays import Array, Index
 from robokin.inverse.analysis import Analysis, analyse
 from robokin.inverse.solve_blocks import BLOCK, quick_block
 from robokin.inverse.verify import within_limits
-from robokin.kernel.chain import Chain, exact, z_to
+from robokin.kernel.chain import Chain
+from robokin.spatial import exact, z_to
 from robokin.workspace.placing import Placing
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.space import Space
@@ -90,7 +91,7 @@ def _with_slides(chain: Chain, count: int, low: Array, high: Array) -> Chain:
         # A slide after a slide: only the direction of each matters.
         constants = list(chain.constants)
         for axis in axes:
-            turn = z_to(tuple(float(part) for part in np.eye(3)[axis]))
+            turn = z_to(np.eye(3)[axis])
             constants[-1] = exact(constants[-1] @ turn)
             constants.append(turn.T)
         revolute = np.concatenate([chain.revolute, np.zeros(count, dtype=bool)])

@@ -18,9 +18,9 @@ from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.jobs.ordered_map import in_order
 from robokin.jobs.sequences import RANDOM_BLOCK, Kind, grid_sides, unit_points
-from robokin.kernel.chain import Chain, exact
+from robokin.kernel.chain import Chain
 from robokin.kernel.columns import cos_sin_of_halves
-from robokin.spatial import rotation_transform, translation_transform
+from robokin.spatial import exact, rotation_transform, translation_transform
 from robokin.workspace.space import Space
 
 Entry = Array | float

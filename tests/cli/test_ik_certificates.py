@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.cli import answers as answers_module
-from robokin.cli.answer_verdicts import verdict
 from robokin.grading.configuration_marks import countable
 from robokin.inverse.solutions import Arc, Family, Result, Solution
+from robokin.reports import solution_report as answers_module
+from robokin.reports.solution_verdicts import verdict
 
 KEYS = ["complete", "basis", "certificate", "counts", "families", "method"]
 """What a document says from `complete` on, in this order."""

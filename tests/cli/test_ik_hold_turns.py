@@ -86,7 +86,7 @@ def test_turns_of_a_batch(call):
 def test_a_batch_of_turns_in_pieces_is_the_same(call, monkeypatch):
     target = "".join(f"{400 + k},200,300,180,0,0\n" for k in range(5)).encode()
     whole = call("ik", "ur5e", "-i", "-", "--turns", "-f", "csv", stdin=target).out
-    monkeypatch.setattr("robokin.cli.answers.TURNED_ROWS", 33)
+    monkeypatch.setattr("robokin.reports.solution_report.TURNED_ROWS", 33)
     assert call("ik", "ur5e", "-i", "-", "--turns", "-f", "csv", stdin=target).out == whole
 
 

@@ -119,7 +119,7 @@ def test_a_request_that_was_switched_off_stays_off(tmp_path):
 WITHIN = """\
 import os, signal, sys
 from robokin.cli import interruptions
-from robokin.cli.interruptions import in_order, unfinished
+from robokin.unfinished_work import in_order, unfinished
 interruptions.heed()
 def ask(): os.kill(os.getpid(), signal.SIGTERM)
 try:

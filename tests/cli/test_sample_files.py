@@ -15,10 +15,11 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.cli import sample_files, sample_rows
-from robokin.cli.sample_files import write_samples
-from robokin.cli.sample_rows import Samples, sample_format
+from robokin.cli.statuses import say
 from robokin.errors import InputError, OutputError
+from robokin.reports import sample_files, sample_rows
+from robokin.reports.sample_files import write_samples
+from robokin.reports.sample_rows import Samples, sample_format
 from robokin.units import Units
 from robokin.workspace.sampling import joint_values, positions
 from robokin.workspace.space import space_of
@@ -186,7 +187,7 @@ def test_what_is_interrupted_is_resumed_to_the_same_bytes(kind, cores, error, pu
     write_samples(str(tmp_path / f"whole.{kind}"), samples, cores=1)
     path = tmp_path / f"cloud.{kind}"
     with pytest.raises(type(error)):
-        write_samples(str(path), samples, cores=cores, progress=stop_after(2, error))
+        write_samples(str(path), samples, cores=cores, progress=stop_after(2, error), say=say)
     assert not path.exists()
     said = capsys.readouterr().err
     assert "2,000 of 2,500 samples are kept in cloud." in said
@@ -218,7 +219,7 @@ def test_an_interruption_before_the_first_block_leaves_nothing(puma, tmp_path, m
 
     monkeypatch.setattr(Samples, "block", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        write_samples(str(tmp_path / "cloud.csv"), samples_of(puma), cores=1)
+        write_samples(str(tmp_path / "cloud.csv"), samples_of(puma), cores=1, say=say)
     assert "nothing was written" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
@@ -446,14 +447,14 @@ import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs are started without
 import robokin
 from robokin.cli.statuses import say
-from robokin.cli.sample_files import write_samples
-from robokin.cli.sample_rows import Samples
+from robokin.reports.sample_files import write_samples
+from robokin.reports.sample_rows import Samples
 from robokin.workspace.space import space_of
 
 space = space_of(robokin.load("planar3r"))
 try:
     samples = Samples(space, space.robot.units, "csv", samples=200_000)
-    write_samples(sys.argv[1], samples, cores=2, resume="resume" in sys.argv)
+    write_samples(sys.argv[1], samples, cores=2, resume="resume" in sys.argv, say=say)
 except KeyboardInterrupt:
     sys.exit(130)
 """

@@ -15,9 +15,9 @@ from pathlib import Path
 
 import pytest
 
-from robokin.cli.output.sink import sink
 from robokin.errors import OutputError
 from robokin.files import descriptor_of
+from robokin.tables.sink import sink
 
 from .conftest import PROGRAM, environment, refused
 

@@ -151,7 +151,7 @@ def test_other_units_hold_for_what_is_read(call):
 
 @pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS.keys())
 def test_an_older_typer_without_pydantic_reads_and_writes_the_same(call, expected, monkeypatch, text):
-    for module in ("tables.csv_rows", "cli.output.text"):
+    for module in ("tables.csv_rows", "tables.written_rows"):
         monkeypatch.setattr(f"robokin.{module}.pydantic_function", lambda name: None)
     answer = call("fk", "puma560", "--q", "-", "-f", "csv", stdin=text)
     assert answer.err == ""

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from rich.cells import cell_len
 
-from robokin.cli.output import tables
-from robokin.cli.output.tables import Table, heading, pairs, render
 from robokin.errors import visible
 from robokin.formats import library_names
+from robokin.reports import page_tables as tables
+from robokin.reports.page_tables import Table, heading, pairs, render
 
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?![\w.])")
 STEERING = "\x1b[31m\x9b2J\x07\r\x08\u202e\u2066\u200f\x7f"

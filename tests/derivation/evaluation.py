@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from robokin.cli.symbolic_python import python_source
 from robokin.derivation.symbolic_kinematics import symbolic_kinematics
+from robokin.derivation.symbolic_python import python_source
 from robokin.derivation.written_sums import written
 
 

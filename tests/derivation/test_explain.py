@@ -15,10 +15,10 @@ from robokin.errors import InputError
 from robokin.formats.library import library_names
 from robokin.inverse.solution_names import branch_names
 from robokin.inverse.verify import wrapped
-from robokin.kernel.dh import standard_dh
 from robokin.kinematics.jacobian import jacobian
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import nearest_rotation, transform
+from robokin.spatial.dh import standard_dh
 
 REGULAR = 0.02
 """Least singular value of the Jacobian, lengths in the arm's reach, of a pose at which solutions do not run together:

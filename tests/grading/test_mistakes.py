@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.cli.check_mistakes import joints_mistake, pose_mistake
-from robokin.cli.check_poses import pose_from, pose_value
+from robokin.grading.answer_mistakes import joints_mistake, pose_mistake
+from robokin.grading.answers.answered_poses import pose_from
 from robokin.grading.configuration_marks import reached
-from robokin.grading.pose_difference import PASS, pose_errors, pose_status
+from robokin.grading.marking import Subject
+from robokin.grading.pose_difference import PASS, pose_errors, pose_status, pose_value
 from robokin.grading.same_robot import OPEN, compare_tables
 from robokin.grading.table_mistakes import table_mistake
 from robokin.grading.tolerance import default_tolerance
@@ -34,8 +35,12 @@ def said_pose(robot, T):
     return np.array([*value["position"], *value["rpy"]])
 
 
+def subject_of(robot, units=None, allowed=None):
+    return Subject(robot, units or robot.units, allowed or default_tolerance(robot))
+
+
 def of_pose(robot, q, values, kind="rpy"):
-    return pose_mistake(robot, q, pose_from(values, kind, robot, robot.units), robot.units, default_tolerance(robot))
+    return pose_mistake(subject_of(robot), q, pose_from(values, kind, robot, robot.units))
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -92,17 +97,17 @@ def test_joint_values(name, rng):
     robot = robokin.load(name)
     q = configuration(robot, rng)
     T = robokin.forward_kinematics(robot, q)
-    arguments = (T, "pose", robot.units, default_tolerance(robot), False)
+    arguments = (T, "pose", False)
     turning = robot.revolute
     factor = 180.0 / np.pi if robot.units.degrees else np.pi / 180.0
-    assert joints_mistake(robot, np.where(turning, q / factor, q), *arguments).name == "angle unit"
-    assert joints_mistake(robot, np.where(turning, -q, q), *arguments).name == "sign"
+    assert joints_mistake(subject_of(robot), np.where(turning, q / factor, q), *arguments).name == "angle unit"
+    assert joints_mistake(subject_of(robot), np.where(turning, -q, q), *arguments).name == "sign"
     one = np.arange(robot.n) == int(np.argmax(turning))
-    assert joints_mistake(robot, q + one * np.pi / 2.0, *arguments).name == "zero"
+    assert joints_mistake(subject_of(robot), q + one * np.pi / 2.0, *arguments).name == "zero"
     if not turning.all():
         other = 1000.0 if robot.units.length == "m" else 0.001
         if np.max(np.abs(q[~turning])) > 0.1:
-            assert joints_mistake(robot, np.where(turning, q, q * other), *arguments).name == "length unit"
+            assert joints_mistake(subject_of(robot), np.where(turning, q, q * other), *arguments).name == "length unit"
 
 
 # Tables ----------------------------------------------------------------------------------------------------
@@ -190,10 +195,10 @@ def test_a_random_wrong_answer_has_hardly_ever_a_known_mistake():
         answer = pose_from(values, "rpy", robot, units)
         if pose_status(*pose_errors(T, answer.T), allowed, T) != PASS:
             count += 1
-            named += pose_mistake(robot, q, answer, units, allowed) is not None
+            named += pose_mistake(subject_of(robot, units, allowed), q, answer) is not None
         if not reached(robot, other, T, allowed, "pose", False).right:
             count += 1
-            named += joints_mistake(robot, other, T, "pose", units, allowed, False) is not None
+            named += joints_mistake(subject_of(robot, units, allowed), other, T, "pose", False) is not None
     assert count > 300
     assert named <= count / 100
 

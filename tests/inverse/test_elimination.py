@@ -22,8 +22,8 @@ from robokin.inverse.elimination.splits import (
     rescue_candidates,
 )
 from robokin.kernel.chain import Chain, chain_of
-from robokin.kernel.dh import standard_dh
 from robokin.spatial import nearest_rotation, rotation_from_rpy, transform
+from robokin.spatial.dh import standard_dh
 
 EXAMPLES = json.loads((Path(__file__).parent.parent / "data" / "six_r_examples.json").read_text())
 ARMS = ["crx10ia", "j2n6s200", "xarm6", "ur5e", "hc10", "m1013", "gen3-lite", "piper-old", "xmate-sr3", "z1"]

@@ -19,8 +19,9 @@ from robokin.inverse.elimination.loop import Loop, loop_of
 from robokin.inverse.elimination.loop_newton import refine
 from robokin.inverse.elimination.starts_close_by import CloseBy
 from robokin.inverse.second_look import known_solutions
-from robokin.kernel.chain import Chain, standard_dh
+from robokin.kernel.chain import Chain
 from robokin.spatial import nearest_rotation
+from robokin.spatial.dh import standard_dh
 
 EXAMPLES = json.loads((Path(__file__).parent.parent / "data" / "six_r_examples.json").read_text())
 TURN = 2.0 * np.pi

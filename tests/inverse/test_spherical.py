@@ -23,8 +23,8 @@ from robokin.inverse.closed_form.loop_axes import meeting_point
 from robokin.inverse.closed_form.spherical_wrist import SphericalTriple
 from robokin.inverse.elimination.loop import loop_of
 from robokin.kernel.chain import Chain
-from robokin.kernel.dh import standard_dh
 from robokin.spatial import invert
+from robokin.spatial.dh import standard_dh
 
 TYPES = ["".join(letters) for letters in itertools.product("RP", repeat=3)]
 ARMS = ["puma560", "stanford", "anthropomorphic-wrist", "irb140", "kr6-r900"]

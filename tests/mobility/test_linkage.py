@@ -7,7 +7,7 @@ import pytest
 from mobility.linkages import bennett, chain_of_four_bars, four_bar, generic_loop, linkage, slider_crank
 
 from robokin.errors import InputError
-from robokin.mobility.assembly import assembled, missing_geometry, parts_of, size_of, space_fault
+from robokin.mobility.assembly import assembled, missing_geometry, size_of, space_fault
 from robokin.mobility.linkage import CLOSED
 from robokin.mobility.screws import logarithm
 from robokin.mobility.slips import slips_of
@@ -91,7 +91,7 @@ def test_what_is_missing_is_named():
 
 def test_parts_that_no_joint_connects():
     mechanism = linkage([("R", "12", (0, 0)), ("R", "34", (1, 0)), ("R", "23", (1, 0)), ("R", "56", (0, 1))])
-    assert parts_of(mechanism) == [("0",), ("1", "2", "3", "4"), ("5", "6")]
+    assert mechanism.graph.parts == (("0",), ("1", "2", "3", "4"), ("5", "6"))
     found = mobility_of(mechanism)
     assert (found.verdict, found.mobility) == ("disconnected", None)
     assert found.note.startswith("no joint holds the mechanism to its ground, 0")

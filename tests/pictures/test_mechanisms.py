@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.cli.mechanism_plots import motion_to_draw, picture_of
 from robokin.mobility.gear_wheels import belt_lines, wheels_of
 from robokin.mobility.trace import trace
+from robokin.pictures.drawn_mechanism import motion_to_draw, picture_of
 from robokin.pictures.mechanism_page import mechanism_page
 from robokin.pictures.mechanism_scene import mechanism_scene
 from robokin.pictures.mechanism_shape import shape_of

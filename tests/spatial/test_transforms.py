@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from robokin.spatial import (
     compose,
@@ -12,6 +13,7 @@ from robokin.spatial import (
     rotation_transform,
     transform,
     translation_transform,
+    z_to,
 )
 
 
@@ -48,3 +50,12 @@ def test_a_point_in_a_turned_and_moved_frame():
     T = translation_transform([10, 5, 0]) @ rotation_transform([0, 0, 1], np.radians(30))
     c, s = np.sqrt(3) / 2, 0.5
     assert np.allclose(map_point(T, [3, 7, 0]), [10 + 3 * c - 7 * s, 5 + 3 * s + 7 * c, 0], atol=1e-14)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 1e-300, 1e-17, 3e-13, 1e-6, 0.3, 1.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_z_is_taken_to_an_axis_however_near(tilt, sign):
+    axis = np.array([tilt, -2.0 * tilt, sign]) * 3.0
+    R = z_to(axis)[:3, :3]
+    assert np.allclose(R[:, 2], axis / np.linalg.norm(axis), atol=2e-15)
+    assert np.allclose(R @ R.T, np.eye(3), atol=1e-15)

@@ -6,30 +6,16 @@ from typing import Annotated
 
 import typer
 
-from robokin.cli.check_options import (
-    BudgetOption,
-    FeedbackOption,
-    FollowOption,
-    GradescopeOption,
-    PartialOption,
-    PointsOption,
-    VisibilityOption,
-    delivery,
-    stated_tolerance,
-)
+from robokin.cli.check_options import MARKS, Marking, angle_tolerance, length_tolerance, marking
 from robokin.cli.completion import robots
-from robokin.cli.options import (
-    AngleOption,
-    FormatOption,
-    JsonOption,
-    LengthOption,
-    OutputOption,
-    SetOption,
-    effective_units,
-    parameter_overrides,
-)
+from robokin.errors import InputError, did_you_mean, shown
 
 
+@marking(
+    "tol", "tol_angle", "follow", *MARKS,
+    tol=length_tolerance("How far a length may be off.  [default: 0.0001 of the arm]"),
+    tol_angle=angle_tolerance("How far an angle may be off.  [default: 0.01 deg]"),
+)  # fmt: skip
 def command(
     files: Annotated[
         list[str],
@@ -50,31 +36,8 @@ def command(
         str | None,
         typer.Option("--up-to", metavar="PARTS", help="What may differ: base, tool, zero, sign, with commas; or all."),
     ] = None,
-    tol: Annotated[
-        str | None,
-        typer.Option(
-            "--tol",
-            "--atol",
-            metavar="L",
-            help="How far a length may be off.  [default: 0.0001 of the arm]",
-        ),
-    ] = None,
-    tol_angle: Annotated[
-        str | None, typer.Option("--tol-angle", metavar="A", help="How far an angle may be off.  [default: 0.01 deg]")
-    ] = None,
-    follow: FollowOption = False,
-    budget: BudgetOption = None,
-    partial: PartialOption = None,
-    feedback: FeedbackOption = None,
-    gradescope: GradescopeOption = None,
-    points: PointsOption = None,
-    visibility: VisibilityOption = None,
-    output: OutputOption = None,
-    format: FormatOption = None,
-    json: JsonOption = False,
-    angle: AngleOption = None,
-    length: LengthOption = None,
-    set_: SetOption = None,
+    *,
+    way: Marking,
 ) -> int:
     """Mark tables: is it kinematically the same robot?
 
@@ -90,25 +53,33 @@ def command(
         robokin check dh submissions/ --against arm.yaml -f csv
         robokin check dh puma560-craig --against puma560 --up-to all
     """
-    from robokin.cli.arguments import load_robot
-    from robokin.cli.check_dh import NOTHING, TableCheck, open_parts
-    from robokin.cli.checks import Report, tolerance_record
-    from robokin.cli.marking import marked
-    from robokin.cli.submissions import submissions
-    from robokin.errors import InputError
-    from robokin.grading.tolerance import default_tolerance
+    from dataclasses import replace
 
-    way = delivery(output, format, json, gradescope, points, visibility, feedback, budget, partial)
+    from robokin.grading.answers.answer_tasks import table_task
+    from robokin.grading.answers.submissions import submissions
+    from robokin.grading.marking import marked
+    from robokin.grading.table_marks import TableCheck
+
     if against is None:
         raise InputError("--against is missing, expected --against ROBOT, the right table")
-    free = open_parts(up_to)
-    model = load_robot(against, parameter_overrides(set_))
-    units = effective_units(model.units, length, angle)
-    allowed = stated_tolerance(default_tolerance(model, table=True), tol, tol_angle, None, units)
-    found = submissions(files, follow)
-    check = TableCheck(model, units, allowed, free, alone=len(found) == 1 and gradescope is None)
-    items = tuple(marked(check.mark, found, way.rules, NOTHING))
-    return way.deliver(Report("dh", model.id or against, units, tolerance_record(allowed, units), items))
+    check = way.subject(TableCheck, against, table=True, free=_open_parts(up_to))
+    found = submissions(files, way.follow)
+    check = replace(check, alone=len(found) == 1 and way.gradescope is None)
+    return way.finish("dh", against, check, marked(check, list(map(table_task, found)), way.rules))
+
+
+def _open_parts(text: str | None) -> frozenset[str]:
+    """What --up-to leaves open. Raises InputError."""
+    from robokin.grading.same_robot import OPEN
+
+    names = [name.strip().lower() for name in (text or "").replace(" ", ",").split(",") if name.strip()]
+    if names == ["all"]:
+        return frozenset(OPEN)
+    for name in names:
+        if name not in OPEN:
+            expected = f"expected some of {', '.join(OPEN)} with commas, or all{did_you_mean(name, OPEN)}"
+            raise InputError(f"--up-to: found '{shown(name)}', {expected}")
+    return frozenset(names)
 
 
 def arguments(words: list[str]) -> list[str]:

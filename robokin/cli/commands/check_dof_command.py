@@ -6,27 +6,15 @@ from typing import Annotated, Any
 
 import typer
 
-from robokin.cli.check_options import (
-    FeedbackOption,
-    GradescopeOption,
-    PointsOption,
-    VisibilityOption,
-    delivery,
-)
+from robokin.cli.check_options import DELIVERY, Marking, marking
 from robokin.cli.completion import robots, words
-from robokin.cli.options import (
-    FormatOption,
-    JsonOption,
-    OutputOption,
-    SetOption,
-    choose,
-    parameter_overrides,
-)
+from robokin.cli.options import choose
 from robokin.errors import InputError, shown
 
 SPACES = ("planar", "spherical", "spatial")
 
 
+@marking(*DELIVERY, "set_")
 def command(
     name: Annotated[
         str | None,
@@ -57,14 +45,8 @@ def command(
             autocompletion=words(*SPACES),
         ),
     ] = None,
-    feedback: FeedbackOption = None,
-    gradescope: GradescopeOption = None,
-    points: PointsOption = None,
-    visibility: VisibilityOption = None,
-    output: OutputOption = None,
-    format: FormatOption = None,
-    json: JsonOption = False,
-    set_: SetOption = None,
+    *,
+    way: Marking,
 ) -> int:
     """Mark an answered number of freedoms: Grübler's count, the true mobility, or both.
 
@@ -73,33 +55,33 @@ def command(
         robokin check dof sarrus --expect 0 --mobility 1 --json
         robokin check dof --links 7 --joints 6R --space spatial --expect 6
     """
-    from robokin.cli.check_dof import count_item
-    from robokin.cli.checks import Report
+    from robokin.grading.count_marks import count_item
+    from robokin.grading.mark_items import Report
 
-    way = delivery(output, format, json, gradescope, points, visibility, feedback)
     if expect is None and mobility is None:
         raise InputError("--expect is missing, expected --expect N for the count or --mobility N for the true mobility")
     bare = {"--links": links, "--joints": joints, "--space": space}
     given = [option for option, value in bare.items() if value is not None]
     if name is not None and given:
         raise InputError(f"{given[0]} counts without a description, expected it without {name}")
-    if name is None and set_:
+    if name is None and way.typed["set_"]:
         raise InputError("--set is for a description, expected its name")
-    record = _counted(links, joints, space) if name is None else _described(name, set_)
+    record = _counted(links, joints, space) if name is None else _described(name, way.overrides)
     items = []
     if expect is not None:
-        items.append(count_item("count", expect, "--expect", record["grubler"], lambda: ""))
+        items.append(count_item("count", expect, "--expect", record["grubler"], ""))
     if mobility is not None:
         note = str(record["note"] or "there is no geometry")
-        items.append(count_item("mobility", mobility, "--mobility", record["mobility"], lambda: note))
+        items.append(count_item("mobility", mobility, "--mobility", record["mobility"], note))
     label = record["name"] or "counted"
     return way.deliver(Report("dof", str(record.get("id") or name or label), None, {}, tuple(items)))
 
 
 def _counted(links: str | None, joints: str | None, space: str | None) -> dict[str, Any]:
     """The count of bare numbers."""
-    from robokin.cli.bare_counts import bare_record, parse_joints
-    from robokin.cli.check_dof import whole_number
+    from robokin.formats.joint_counts import parse_joints
+    from robokin.grading.answers.typed_answers import whole_number
+    from robokin.records.count_records import bare_record
 
     if links is None or joints is None or space is None:
         raise InputError("NAME is missing, expected a mechanism, or all of --links, --joints and --space")
@@ -111,14 +93,14 @@ def _counted(links: str | None, joints: str | None, space: str | None) -> dict[s
     return bare_record(number, parse_joints(joints, chosen), chosen)
 
 
-def _described(name: str, set_: list[str] | None) -> dict[str, Any]:
+def _described(name: str, overrides: dict[str, str]) -> dict[str, Any]:
     """The count and the mobility of what a description describes."""
     from robokin.cli.arguments import load_entry
-    from robokin.cli.mobilities import mechanism_record, robot_record
     from robokin.mobility.verdict import mobility_of
     from robokin.model import Mechanism, Robot
+    from robokin.records.freedom_records import mechanism_record, robot_record
 
-    entry = load_entry(name, parameter_overrides(set_))
+    entry = load_entry(name, overrides)
     if isinstance(entry, Mechanism):
         return mechanism_record(mobility_of(entry), entry.units, 0)
     if isinstance(entry, Robot):

@@ -6,35 +6,9 @@ from typing import Annotated
 
 import typer
 
-from robokin.cli.check_options import (
-    BudgetOption,
-    FeedbackOption,
-    FollowOption,
-    GradescopeOption,
-    InputAnswersOption,
-    KeyOption,
-    PartialOption,
-    PointsOption,
-    RtolOption,
-    TolAngleOption,
-    TolOption,
-    VisibilityOption,
-    delivery,
-    one_source,
-    stated_tolerance,
-)
+from robokin.cli.check_options import FILES, MARKS, TOLERANCES, Marking, marking
 from robokin.cli.completion import named_poses
-from robokin.cli.options import (
-    AngleOption,
-    FormatOption,
-    JsonOption,
-    LengthOption,
-    OutputOption,
-    RobotArgument,
-    SetOption,
-    effective_units,
-    parameter_overrides,
-)
+from robokin.cli.options import RobotArgument
 from robokin.cli.target_options import (
     ApproachOption,
     EulerOption,
@@ -47,8 +21,10 @@ from robokin.cli.target_options import (
     XyzOption,
     target_texts,
 )
+from robokin.errors import InputError
 
 
+@marking(*FILES, *TOLERANCES, *MARKS)
 def command(
     robot: RobotArgument,
     q: Annotated[
@@ -74,24 +50,8 @@ def command(
     ] = False,
     any_: Annotated[bool, typer.Option("--any", help="Each answer is marked by itself, also several.")] = False,
     no_limits: Annotated[bool, typer.Option("--no-limits", help="The joint limits do not matter.")] = False,
-    input: InputAnswersOption = None,
-    key: KeyOption = None,
-    follow: FollowOption = False,
-    tol: TolOption = None,
-    tol_angle: TolAngleOption = None,
-    rtol: RtolOption = None,
-    budget: BudgetOption = None,
-    partial: PartialOption = None,
-    feedback: FeedbackOption = None,
-    gradescope: GradescopeOption = None,
-    points: PointsOption = None,
-    visibility: VisibilityOption = None,
-    output: OutputOption = None,
-    format: FormatOption = None,
-    json: JsonOption = False,
-    angle: AngleOption = None,
-    length: LengthOption = None,
-    set_: SetOption = None,
+    *,
+    way: Marking,
 ) -> int:
     """Mark joint values that were answered for a target, given as for robokin ik.
 
@@ -107,42 +67,28 @@ def command(
         robokin check ik puma560 --xyz=-149.09,921.12,20.32 --rpy 0,90,90 --q home
         robokin check ik planar2r --xy 5,0 --q none
     """
-    from dataclasses import replace
-
-    from robokin.cli.arguments import load_robot
-    from robokin.cli.check_ik import InverseCheck, JointsTask
-    from robokin.cli.check_poses import pose_reader
-    from robokin.cli.check_rows import read_key, read_sheet
-    from robokin.cli.checks import Report, tolerance_record
-    from robokin.cli.marking import marked
     from robokin.cli.statuses import say
     from robokin.cli.targets import parse_target
-    from robokin.errors import InputError
-    from robokin.grading.tolerance import default_tolerance
+    from robokin.grading.answers.answer_tasks import joint_tasks
+    from robokin.grading.answers.answered_poses import AnsweredPose
+    from robokin.grading.answers.typed_answers import typed_joints
+    from robokin.grading.joint_marks import JointCheck
+    from robokin.grading.marking import AnswerTask, GivenValue, marked
 
-    way = delivery(output, format, json, gradescope, points, visibility, feedback, budget, partial)
     targets = target_texts(pose, matrix, xyz, rpy, euler, quat, approach, xy, phi)
-    one_source({**targets, "--q": q}, input, key)
+    way.one_source({**targets, "--q": q})
     if every and any_:
         raise InputError("--all and --any exclude each other, expected one of them")
-    model = load_robot(robot, parameter_overrides(set_))
-    if not model.n:
-        raise InputError(f"{model.name} has no joints, expected a robot that can move")
-    units = effective_units(model.units, length, angle)
-    allowed = stated_tolerance(default_tolerance(model), tol, tol_angle, rtol, units)
-    check = InverseCheck(model, units, allowed, not no_limits, True if every else False if any_ else None)
-    if input is not None:
-        sheet = read_sheet(input, follow=follow)
-        if key is None:
-            check = replace(check, reader=pose_reader(sheet, model, units))
-        tasks = check.file(sheet, None if key is None else read_key(key))
+    asked = True if every else False if any_ else None
+    check = way.subject(JointCheck, robot, limits=not no_limits, every=asked)
+    if way.input is not None:
+        tasks = joint_tasks(way.input, way.key, check.robot, check.units, say, follow=way.follow)
     else:
-        target = parse_target(targets, model, units)
+        target = parse_target(targets, check.robot, check.units)
         if not q:
             raise InputError("--q is missing, expected the joint values that were answered, or --input FILE")
         for note in target.notes:
             say(note)
-        known = check.solutions(target) if check.needs_all(q) else None
-        tasks = [JointsTask("1", target, tuple(q), known=known)]
-    items = tuple(marked(check.mark, tasks, way.rules))
-    return way.deliver(Report("ik", model.id or robot, units, tolerance_record(allowed, units), items))
+        answers = tuple(typed_joints(text, check.robot, check.units) for text in q)
+        tasks = [AnswerTask("1", GivenValue(AnsweredPose(target.T, target.task)), answers)]
+    return way.finish("ik", robot, check, marked(check, check.prepared(tasks), way.rules))

@@ -6,32 +6,17 @@ from typing import Annotated
 
 import typer
 
-from robokin.cli.check_options import (
-    BudgetOption,
-    FeedbackOption,
-    GradescopeOption,
-    PartialOption,
-    PointsOption,
-    RtolOption,
-    VisibilityOption,
-    delivery,
-    stated_tolerance,
-)
+from robokin.cli.check_options import MARKS, TOLERANCES, Marking, angle_tolerance, length_tolerance, marking
 from robokin.cli.completion import named_poses, words
-from robokin.cli.options import (
-    AngleOption,
-    FormatOption,
-    JsonOption,
-    LengthOption,
-    OutputOption,
-    RobotArgument,
-    SetOption,
-    choose,
-    effective_units,
-    parameter_overrides,
-)
+from robokin.cli.options import RobotArgument, choose
+from robokin.errors import InputError
 
 
+@marking(
+    *TOLERANCES, *MARKS,
+    tol=length_tolerance("How far a length may be off.  [default: 0.001 of the arm]"),
+    tol_angle=angle_tolerance("How far a direction may be off.  [default: 0.1 deg]"),
+)  # fmt: skip
 def command(
     robot: RobotArgument,
     q: Annotated[
@@ -52,32 +37,8 @@ def command(
             autocompletion=words("base", "tool"),
         ),
     ] = None,
-    tol: Annotated[
-        str | None,
-        typer.Option(
-            "--tol",
-            "--atol",
-            metavar="L",
-            help="How far a length may be off.  [default: 0.001 of the arm]",
-        ),
-    ] = None,
-    tol_angle: Annotated[
-        str | None,
-        typer.Option("--tol-angle", metavar="A", help="How far a direction may be off.  [default: 0.1 deg]"),
-    ] = None,
-    rtol: RtolOption = None,
-    budget: BudgetOption = None,
-    partial: PartialOption = None,
-    feedback: FeedbackOption = None,
-    gradescope: GradescopeOption = None,
-    points: PointsOption = None,
-    visibility: VisibilityOption = None,
-    output: OutputOption = None,
-    format: FormatOption = None,
-    json: JsonOption = False,
-    angle: AngleOption = None,
-    length: LengthOption = None,
-    set_: SetOption = None,
+    *,
+    way: Marking,
 ) -> int:
     """Mark a geometric Jacobian, linear rows before angular ones, entry by entry.
 
@@ -90,26 +51,16 @@ def command(
         robokin check jacobian planar2r --q 0,90 --expect "$(cat jacobian.txt)"
         robokin check jacobian planar2r --q 0,90 --frame tool --expect "$J"
     """
-    from robokin.cli.arguments import joint_factors, load_robot, parse_configuration
-    from robokin.cli.check_jacobian import JacobianCheck, JacobianTask
-    from robokin.cli.checks import Report, tolerance_record
-    from robokin.cli.marking import marked
-    from robokin.errors import InputError
-    from robokin.grading.tolerance import default_tolerance
+    from robokin.cli.arguments import joint_factors, parse_configuration
+    from robokin.grading.answers.typed_answers import jacobian_answer
+    from robokin.grading.jacobian_marks import JacobianCheck
+    from robokin.grading.marking import AnswerTask, GivenValue, marked
 
-    way = delivery(output, format, json, gradescope, points, visibility, feedback, budget, partial)
     for option, value in (("--q", q), ("--expect", expect)):
         if value is None:
             raise InputError(f"{option} is missing, expected --q and --expect")
-    assert q is not None
-    assert expect is not None
     chosen = choose(frame, ("base", "tool"), "--frame") or "base"
-    model = load_robot(robot, parameter_overrides(set_))
-    if not model.n:
-        raise InputError(f"{model.name} has no joints, expected a robot that can move")
-    units = effective_units(model.units, length, angle)
-    allowed = stated_tolerance(default_tolerance(model), tol, tol_angle, rtol, units)
-    values = parse_configuration(q, model, units) * joint_factors(model, units)
-    check = JacobianCheck(model, units, allowed)
-    items = tuple(marked(check.mark, [JacobianTask(expect, values, chosen)], way.rules, {"q": None, "frame": None}))
-    return way.deliver(Report("jacobian", model.id or robot, units, tolerance_record(allowed, units), items))
+    check = way.subject(JacobianCheck, robot, frame=chosen)
+    values = parse_configuration(str(q), check.robot, check.units) * joint_factors(check.robot, check.units)
+    task = AnswerTask("1", GivenValue(values), (jacobian_answer(str(expect), check.robot, check.units, chosen),))
+    return way.finish("jacobian", robot, check, marked(check, [task], way.rules))

@@ -7,23 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robokin.cli.completion import robots, words
-from robokin.cli.options import (
-    AngleOption,
-    ArrayOutputOption,
-    FormatOption,
-    JsonOption,
-    LengthOption,
-    SetOption,
-    choose,
-    effective_units,
-    output_format,
-    parameter_overrides,
-)
+from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
+from robokin.cli.options import choose, option, whole_number
 from robokin.cli.statuses import DONE
-from robokin.errors import InputError, or_list, shown
+from robokin.errors import InputError, did_you_mean, or_list, shown
 
 if TYPE_CHECKING:
-    from robokin.cli.motions import Point
+    from robokin.mobility.point_paths import Point
     from robokin.mobility.trace import Trace
     from robokin.model import Mechanism
     from robokin.units import Units
@@ -47,57 +37,30 @@ def command(
             show_default=False,
         ),
     ] = None,
-    links: Annotated[
-        str | None, typer.Option("--links", metavar="N", help="Count without a description: links, with the ground.")
-    ] = None,
+    *,
+    links: Annotated[str | None, option("--links", "N", "Count without a description: links, with the ground.")] = None,
     joints: Annotated[
-        str | None,
-        typer.Option("--joints", metavar="JOINTS", help="With --links: joints by type, such as 6R or 12S,6P."),
+        str | None, option("--joints", "JOINTS", "With --links: joints by type, such as 6R or 12S,6P.")
     ] = None,
     space: Annotated[
-        str | None,
-        typer.Option(
-            "--space",
-            metavar="SPACE",
-            help="With --links: planar, spherical or spatial.",
-            autocompletion=words(*SPACES),
-        ),
+        str | None, option("--space", "SPACE", "With --links: planar, spherical or spatial.", words(*SPACES))
     ] = None,
-    between: Annotated[
-        str | None, typer.Option("--between", metavar="A,B", help="How link A moves against link B.")
-    ] = None,
-    trace: Annotated[
-        str | None, typer.Option("--trace", metavar="N", help="Write N configurations along the motion instead.")
-    ] = None,
+    between: Annotated[str | None, option("--between", "A,B", "How link A moves against link B.")] = None,
+    trace: Annotated[str | None, option("--trace", "N", "Write N configurations along the motion instead.")] = None,
     drive: Annotated[
-        str | None,
-        typer.Option("--drive", metavar="JOINT", help="The joint that leads the motion.  [default: the actuated one]"),
+        str | None, option("--drive", "JOINT", "The joint that leads the motion.  [default: the actuated one]")
     ] = None,
     point: Annotated[
         list[str] | None,
-        typer.Option(
-            "--point", metavar="LINK:X,Y", help="Follow a point of a link, where it is as assembled; repeatable."
-        ),
+        option("--point", "LINK:X,Y", "Follow a point of a link, where it is as assembled; repeatable."),
     ] = None,
     plot: Annotated[
-        str | None,
-        typer.Option(
-            "--plot", "-p", metavar="FILE", help="Draw the mechanism to .png, .svg, .pdf, or .html that moves."
-        ),
+        str | None, option("--plot -p", "FILE", "Draw the mechanism to .png, .svg, .pdf, or .html that moves.")
     ] = None,
-    mode: Annotated[
-        str | None,
-        typer.Option("--mode", metavar="N", help="Which way to put links of given lengths together."),
-    ] = None,
-    seed: Annotated[
-        str | None, typer.Option("--seed", metavar="N", help="Taken as before: nothing hangs on it.")
-    ] = None,
-    output: ArrayOutputOption = None,
-    format: FormatOption = None,
-    json: JsonOption = False,
-    angle: AngleOption = None,
-    length: LengthOption = None,
-    set_: SetOption = None,
+    mode: Annotated[str | None, option("--mode", "N", "Which way to put links of given lengths together.")] = None,
+    seed: Annotated[str | None, option("--seed", "N", "Taken as before: nothing hangs on it.")] = None,
+    output: ArrayOutputOptions,
+    description: DescriptionOptions,
 ) -> int:
     """Degrees of freedom: Grübler's count, and what the geometry says.
 
@@ -121,141 +84,115 @@ def command(
         robokin dof slider-crank --trace 5
         robokin dof four-bar --trace 360 --point coupler:3,4 --output path.csv
     """
-    from robokin.cli.output.sink import format_of, sink
+    from robokin.reports.freedom_report import freedoms_written
+    from robokin.tables.sink import sink
 
-    kind = format_of(output, output_format(format, json), arrays=True)
+    kind = output.kind
     if kind == "npy" and trace is None:
-        raise InputError(f"--output {output}: an array holds configurations, expected --trace N with it")
+        raise InputError(f"--output {output.file}: an array holds configurations, expected --trace N with it")
     bare = {"--links": links, "--joints": joints, "--space": space}
     motion = {"--between": between, "--trace": trace, "--drive": drive, "--point": point, "--plot": plot}
     if name is None:
-        _refuse(motion | {"--set": set_, "--mode": mode}, "is for a description", "its name")
-        data = _bare(links, joints, space, kind)
+        _refuse(motion | {"--set": description.set_, "--mode": mode}, "is for a description", "its name")
+        answer: dict[str, Any] | bytes = _bare(links, joints, space)
     else:
-        _refuse(bare, "counts without a description", f"it without {name}")
         from robokin.cli.arguments import way_of
 
-        data = _described(
-            name, kind, motion, _whole(seed, "--seed", 0, 2**63 - 1) or 0, (length, angle), set_, way_of(mode)
-        )
-    with sink(output) as stream:
+        _refuse(bare, "counts without a description", f"it without {name}")
+        whole = whole_number(seed, "--seed", 0, 2**63 - 1) or 0
+        answer = _described(name, kind, motion, whole, description, way_of(mode))
+    data = answer if isinstance(answer, bytes) else freedoms_written(answer, kind)
+    with sink(output.file) as stream:
         stream.write(data)
     return DONE
 
 
 def _refuse(options: dict[str, Any], reason: str, expected: str) -> None:
     """Raise InputError for an option that does not belong here."""
-    for option, value in options.items():
+    for name, value in options.items():
         if value:
-            raise InputError(f"{option} {reason}, expected {expected}")
+            raise InputError(f"{name} {reason}, expected {expected}")
 
 
-def _whole(text: str | None, option: str, least: int, most: int) -> int | None:
-    """A whole number within bounds. Raises InputError."""
-    if text is None:
-        return None
-    digits = text.strip()
-    if not (digits.isascii() and digits.isdecimal() and len(digits) < 25) or not least <= int(digits) <= most:
-        limit = f"of {least} or more" if most >= 2**62 else f"from {least} to {most}"
-        raise InputError(f"{option}: found '{shown(text)}', expected a whole number {limit}")
-    return int(digits)
-
-
-def _bare(links: str | None, joints: str | None, space: str | None, kind: str) -> bytes:
+def _bare(links: str | None, joints: str | None, space: str | None) -> dict[str, Any]:
     """The count of bare numbers; neither arrays nor descriptions are needed for it."""
-    from robokin.cli.bare_counts import bare_record, parse_joints
+    from robokin.formats.joint_counts import parse_joints
+    from robokin.records.count_records import bare_record
 
     if links is None and joints is None and space is None:
         raise InputError("NAME is missing, expected a mechanism, a robot or a wheeled base, or --links and --joints")
-    for option, value, example in (("--links", links, "--links 7"), ("--joints", joints, "--joints 6R"),
-                                   ("--space", space, f"--space {or_list(SPACES)}")):  # fmt: skip
+    for name, value, example in (
+        ("--links", links, "7"),
+        ("--joints", joints, "6R"),
+        ("--space", space, or_list(SPACES)),
+    ):
         if value is None:
-            raise InputError(f"{option} is missing, expected for example {example}: a count needs all three")
+            raise InputError(f"{name} is missing, expected for example {name} {example}: a count needs all three")
     chosen = choose(space, SPACES, "--space")
-    number = _whole(links, "--links", 1, MOST_LINKS)
+    number = whole_number(links, "--links", 1, MOST_LINKS)
     assert chosen is not None and number is not None and joints is not None
-    return _written(bare_record(number, parse_joints(joints, chosen), chosen), kind)
-
-
-def _written(record: dict[str, Any], kind: str) -> bytes:
-    """The answer in a format."""
-    from robokin.cli.output.text import csv_records, json_document, json_line
-
-    if kind == "json":
-        return json_document(record)
-    if kind == "jsonl":
-        return json_line(record)
-    if kind == "csv":
-        cells: dict[str, Any] = {}
-        for key, value in record.items():
-            if key not in ("schema", "id") and not isinstance(value, (dict, list)):
-                cells[key] = value
-            if key == "kind" and record["id"] is not None:
-                cells["id"] = record["id"]
-        return csv_records(list(cells), [list(cells.values())])
-    from robokin.cli.mobility_tables import mobility_table, wheeled_table
-
-    return wheeled_table(record) if record["kind"] == "wheeled" else mobility_table(record)
+    return bare_record(number, parse_joints(joints, chosen), chosen)
 
 
 def _described(
-    name: str, kind: str, motion: dict[str, Any], seed: int, unit_names: tuple[str | None, str | None],
-    set_: list[str] | None, mode: int | None,
-) -> bytes:  # fmt: skip
-    """The answer about what a description describes."""
-    from robokin.cli.arguments import load_entry
+    name: str, kind: str, motion: dict[str, Any], seed: int, description: DescriptionOptions, mode: int | None
+) -> dict[str, Any] | bytes:  # fmt: skip
+    """The document about what a description describes, or the bytes of its motion."""
     from robokin.model import Mechanism, Robot
 
-    entry = load_entry(name, parameter_overrides(set_), mode)
-    units = effective_units(entry.units, *unit_names)
+    entry = description.entry(name, mode)
+    units = description.over(entry.units)
     if isinstance(entry, Mechanism):
         return _mechanism(entry, units, kind, motion, seed)
     _refuse(motion, "is for mechanisms", "one of those")
     if isinstance(entry, Robot):
-        from robokin.cli.mobilities import robot_record
+        from robokin.records.freedom_records import robot_record
 
-        return _written(robot_record(entry, units), kind)
-    from robokin.cli.mobilities import wheeled_record
+        return robot_record(entry, units)
     from robokin.mobility.manoeuvrability import manoeuvrability_of
+    from robokin.records.freedom_records import wheeled_record
 
-    return _written(wheeled_record(entry, manoeuvrability_of(entry), units), kind)
+    return wheeled_record(entry, manoeuvrability_of(entry), units)
 
 
-def _mechanism(mechanism: Mechanism, units: Units, kind: str, motion: dict[str, Any], seed: int) -> bytes:
-    from robokin.cli.mobilities import mechanism_record
+def _mechanism(
+    mechanism: Mechanism, units: Units, kind: str, motion: dict[str, Any], seed: int
+) -> dict[str, Any] | bytes:
     from robokin.mobility.verdict import mobility_of
+    from robokin.records.freedom_records import mechanism_record
 
-    steps, plot = _whole(motion["--trace"], "--trace", 1, MOST_STEPS), motion["--plot"]
+    steps, plot = whole_number(motion["--trace"], "--trace", 1, MOST_STEPS), motion["--plot"]
     if steps is None and plot is None:
         about = {option: motion[option] for option in ("--drive", "--point")}
         _refuse(about, "is about a motion", "--trace N or --plot")
     if steps is not None and motion["--between"]:
         raise InputError("--trace and --between exclude each other, expected one of them")
     if plot is not None:
-        from robokin.cli.mechanism_plots import check_drawable
+        from robokin.pictures.drawn_mechanism import check_drawable
 
         check_drawable(mechanism, plot, "--plot")
     if steps is not None or plot is not None:
-        from robokin.cli.motions import MotionRows, parse_point
+        from robokin.records.motion_records import MotionRecords
+        from robokin.reports.motion_report import motion_written
 
-        points = [parse_point(text, mechanism, units) for text in motion["--point"] or []]
+        points = [_point(text, mechanism, units) for text in motion["--point"] or []]
         wanted = bool(steps is not None or points or motion["--drive"])
         moved = _trace(mechanism, steps, motion["--drive"], wanted)
         if plot is not None:
             _plot(plot, mechanism, moved, points, units)
         if steps is not None and moved is not None:
-            return MotionRows(moved, points, units).written(kind)
+            return motion_written(MotionRecords(moved, points, units), kind)
     found = mobility_of(mechanism, _pair(motion["--between"]), seed)
-    return _written(mechanism_record(found, units, seed), kind)
+    return mechanism_record(found, units, seed)
 
 
 def _plot(plot: str, mechanism: Mechanism, moved: Trace | None, points: list[Point], units: Units) -> None:
     """Draw to a file."""
     from pathlib import Path
 
-    from robokin.cli.mechanism_plots import picture_of
-    from robokin.cli.motions import paths_of
-    from robokin.cli.output.sink import sink
+    from robokin.mobility.point_paths import paths_of
+    from robokin.pictures.drawn_mechanism import picture_of
+    from robokin.tables.sink import sink
 
     paths = paths_of(moved, points) if moved is not None else None
     picture = picture_of(mechanism, moved, paths, units, Path(plot).suffix.lower())
@@ -265,8 +202,8 @@ def _plot(plot: str, mechanism: Mechanism, moved: Trace | None, points: list[Poi
 
 def _trace(mechanism: Mechanism, steps: int | None, drive: str | None, wanted: bool) -> Trace | None:
     """Configurations along the motion; None where a picture alone is asked of what does not move."""
-    from robokin.cli.mechanism_plots import DRAWN_STEPS, motion_to_draw
     from robokin.mobility.trace import trace
+    from robokin.pictures.drawn_mechanism import DRAWN_STEPS, motion_to_draw
 
     if wanted:
         return trace(mechanism, steps or DRAWN_STEPS, drive)
@@ -281,3 +218,23 @@ def _pair(between: str | None) -> tuple[str, str] | None:
     if len(names) != 2 or not all(names):
         raise InputError(f"--between: found '{shown(between)}', expected two links with a comma: A,B")
     return names[0], names[1]
+
+
+def _point(text: str, mechanism: Mechanism, units: Units) -> Point:
+    """A point such as `coupler:1,2`, of a link and in the assembled configuration. Raises InputError."""
+    import numpy as np
+
+    from robokin.cli.arguments import parse_numbers, split_vector
+    from robokin.mobility.point_paths import Point
+
+    link, colon, place = text.rpartition(":")
+    link = link.strip()
+    if not colon or not link:
+        raise InputError(f"--point: found '{shown(text)}', expected LINK:X,Y, such as {mechanism.links[-1]}:1,2")
+    if link not in mechanism.links:
+        hint = did_you_mean(link, mechanism.links) or f", expected one of {', '.join(mechanism.links[:12])}"
+        raise InputError(f"--point: found the unknown link '{shown(link)}'{hint}")
+    plane = mechanism.space == "planar" and len(split_vector(place)) != 3
+    what = "x, y" if plane else "x, y and z"
+    numbers = parse_numbers(place, "--point", [False] * (2 if plane else 3), units, what)
+    return Point(link, np.append(numbers, 0.0)[:3] * units.metres)

@@ -6,17 +6,10 @@ from typing import Annotated, Any
 
 import typer
 
-from robokin.cli.options import (
-    AngleOption,
-    ArrayOutputOption,
-    AsOption,
-    FormatOption,
-    JsonOption,
-    LengthOption,
-    effective_units,
-    orientation_kind,
-    output_format,
-)
+from robokin.cli.option_groups import ArrayOutputOptions, UnitOptions
+from robokin.cli.options import AsOption, option, orientation_kind
+from robokin.cli.statuses import say
+from robokin.errors import ExpressionError, InputError
 
 
 def command(
@@ -31,18 +24,13 @@ def command(
             show_default=False,
         ),
     ],
-    of: Annotated[
-        str | None,
-        typer.Option("--of", metavar="EXPR", help="Map this frame: the result is EXPR times it."),
-    ] = None,
+    *,
+    of: Annotated[str | None, option("--of", "EXPR", "Map this frame: the result is EXPR times it.")] = None,
     inverse: Annotated[bool, typer.Option("--inverse", help="Take the inverse of EXPR (before --of).")] = False,
-    point: Annotated[str | None, typer.Option("--point", metavar="X,Y,Z", help="Map a point by the result.")] = None,
+    point: Annotated[str | None, option("--point", "X,Y,Z", "Map a point by the result.")] = None,
     as_: AsOption = None,
-    output: ArrayOutputOption = None,
-    format: FormatOption = None,
-    json: JsonOption = False,
-    angle: AngleOption = None,
-    length: LengthOption = None,
+    output: ArrayOutputOptions,
+    typed: UnitOptions,
 ) -> int:
     """Evaluate a transform expression: matrix, n s a p, angles of every kind, quaternion.
 
@@ -57,21 +45,18 @@ def command(
     import numpy as np
 
     from robokin.cli.arguments import parse_numbers
-    from robokin.cli.output.sink import format_of, sink
-    from robokin.cli.output.text import csv_header, csv_rows, json_document, json_line
-    from robokin.cli.records import frame_record, poses_in
-    from robokin.cli.statuses import say
-    from robokin.errors import ExpressionError, InputError
     from robokin.formats.number_expressions import Scope
     from robokin.formats.transform_expressions import evaluate_transform
     from robokin.records.envelope import envelope
+    from robokin.records.pose_records import frame_record, poses_in
+    from robokin.reports.frame_report import frame_written
     from robokin.spatial import invert, map_point
-    from robokin.tables.orientations import pose_columns, pose_table
+    from robokin.tables.sink import sink
     from robokin.units import Units
 
-    kind = format_of(output, output_format(format, json), arrays=True)
+    kind = output.kind
     columns = orientation_kind(as_)
-    units = effective_units(Units(angle="deg"), length, angle)
+    units = typed.over(Units(angle="deg"))
     scope = Scope(degrees=units.degrees)
     notes: list[str] = []
 
@@ -102,51 +87,6 @@ def command(
         if kind == "npy":
             raise InputError("--point: an array of a transform has no room for a point, expected another format")
 
-    with sink(output) as stream:
-        if kind == "json":
-            stream.write(json_document(record))
-        elif kind == "jsonl":
-            stream.write(json_line(record))
-        elif kind == "csv":
-            names, row = pose_columns(columns or "rpy"), pose_table(T[None], columns or "rpy", units)
-            if mapped is not None:
-                names, row = (*names, "point_x", "point_y", "point_z"), np.hstack([row, mapped[None]])
-            stream.write(csv_header(names) + csv_rows(row))
-        elif kind == "npy":
-            row = T if columns in (None, "matrix") else pose_table(T[None], columns, units)[0]
-            np.lib.format.write_array(stream, row, version=(1, 0))
-        else:
-            stream.write(_table(record, units, columns))
+    with sink(output.file) as stream:
+        stream.writelines(frame_written(kind, record, T, columns, units, mapped))
     return 0
-
-
-LABELS = {"quaternion_xyzw": "x y z w", "rotvec": "rotation vector", "abc": "A B C", "wpr": "W P R"}
-"""What a table says of an orientation that it has on demand only."""
-
-
-def _table(record: dict[str, Any], units: Any, kind: str | None) -> bytes:
-    from robokin.cli.output.numbers import show
-    from robokin.cli.output.tables import heading, number_table, pairs, render
-
-    def row(values: list[float]) -> str:
-        return "  ".join(show(value) for value in values)
-
-    turn = record["axis_angle"]
-    entries = [
-        ("position", row(record["position"])),
-        ("roll pitch yaw", row(record["rpy"])),
-        ("Euler ZYZ", row(record["euler"])),
-        ("quaternion", row(record["quaternion"])),
-        ("axis, angle", f"{row(turn['axis'])}, {show(turn['angle'])}"),
-    ]
-    if (key := (kind or "rpy").replace("-", "_")) in LABELS:
-        entries.insert(1, (LABELS[key], row(record[key])))
-    if "point" in record:
-        entries.append(("point", row(record["point"])))
-    return render(
-        heading(record["expression"] or "identity", f"lengths in {units.length}, angles in {units.angle}"),
-        "",
-        number_table("nsap", record["matrix"][:3], "xyz"),
-        "",
-        pairs(entries),
-    )

@@ -8,34 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robokin.cli.completion import named_poses, words
-from robokin.cli.options import (
-    AngleOption,
-    ArrayOutputOption,
-    DropOption,
-    FormatOption,
-    JsonOption,
-    LengthOption,
-    RobotArgument,
-    SetOption,
-    choose,
-    effective_units,
-    orientation_kind,
-    output_format,
-    parameter_overrides,
-)
-from robokin.cli.statuses import DONE, NO
-from robokin.cli.target_options import (
-    ApproachOption,
-    EulerOption,
-    MatrixOption,
-    PhiOption,
-    PoseOption,
-    QuatOption,
-    RpyOption,
-    XyOption,
-    XyzOption,
-    target_texts,
-)
+from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
+from robokin.cli.options import DropOption, RobotArgument, choose, option, orientation_kind, whole_number
+from robokin.cli.statuses import DONE, NO, say
+from robokin.cli.target_options import TargetOptions
+from robokin.errors import InputError, counted
 
 if TYPE_CHECKING:
     from robokin.arrays import Array
@@ -50,90 +27,61 @@ DIGITS = 18
 
 def command(
     robot: RobotArgument,
-    pose: PoseOption = None,
-    matrix: MatrixOption = None,
-    xyz: XyzOption = None,
-    rpy: RpyOption = None,
-    euler: EulerOption = None,
-    quat: QuatOption = None,
-    approach: ApproachOption = None,
-    xy: XyOption = None,
-    phi: PhiOption = None,
+    *,
+    target: TargetOptions,
     input: Annotated[
         str | None,
-        typer.Option(
-            "--input",
-            "-i",
-            metavar="FILE",
-            help="A pose a line: x, y, z, roll, pitch, yaw or what else `robokin fk` writes (.csv, .jsonl, .json, "
+        option(
+            "--input -i",
+            "FILE",
+            "A pose a line: x, y, z, roll, pitch, yaw or what else `robokin fk` writes (.csv, .jsonl, .json, "
             ".npy), or x, y, z alone; - for standard input.",
         ),
     ] = None,
     near: Annotated[
         str | None,
-        typer.Option(
+        option(
             "--near",
-            metavar="Q",
-            help="Order by the greatest joint move from these values or this named pose; of a self-motion the "
+            "Q",
+            "Order by the greatest joint move from these values or this named pose; of a self-motion the "
             "nearest member is listed.",
-            autocompletion=named_poses,
+            named_poses,
         ),
     ] = None,
     method: Annotated[
-        str | None,
-        typer.Option(
-            "--method",
-            metavar="METHOD",
-            help="auto, analytic or numeric.  [default: auto]",
-            autocompletion=words(*METHODS),
-        ),
+        str | None, option("--method", "METHOD", "auto, analytic or numeric.  [default: auto]", words(*METHODS))
     ] = None,
     no_limits: Annotated[bool, typer.Option("--no-limits", help="Also solutions outside the joint limits.")] = False,
-    max_: Annotated[
-        str | None, typer.Option("--max", metavar="N", help="At most so many solutions for a target.")
-    ] = None,
+    max_: Annotated[str | None, option("--max", "N", "At most so many solutions for a target.")] = None,
     turns: Annotated[
         bool, typer.Option("--turns", help="Also the ±360° equivalents of each solution within the joint limits.")
     ] = False,
     hold: Annotated[
         list[str] | None,
-        typer.Option(
-            "--hold",
-            metavar="JOINT=VALUE",
-            help="Fix a joint, such as q3=20, and solve for the others; repeatable.",
-        ),
+        option("--hold", "JOINT=VALUE", "Fix a joint, such as q3=20, and solve for the others; repeatable."),
     ] = None,
-    seed: Annotated[
-        str | None,
-        typer.Option("--seed", metavar="N", help="Random seed (default 0)."),
-    ] = None,
+    seed: Annotated[str | None, option("--seed", "N", "Random seed (default 0).")] = None,
     tol_position: Annotated[
-        str | None,
-        typer.Option("--tol-position", metavar="L", help="Take the nearest pose if its position error is no more."),
+        str | None, option("--tol-position", "L", "Take the nearest pose if its position error is no more.")
     ] = None,
     tol_angle: Annotated[
-        str | None,
-        typer.Option("--tol-angle", metavar="A", help="Take the nearest pose if its angle error is no more."),
+        str | None, option("--tol-angle", "A", "Take the nearest pose if its angle error is no more.")
     ] = None,
     explain: Annotated[
         bool, typer.Option("--explain", help="Also the closed-form steps with the numbers in them, as a lecture does.")
     ] = False,
     as_: Annotated[
         str | None,
-        typer.Option(
+        option(
             "--as",
-            metavar="KIND",
-            help="With --input, of rows without a header: rpy, quaternion (w x y z), quaternion-xyzw, euler (Z Y Z), "
-            "rotvec, abc, wpr or matrix.  [default: rpy, or matrix for 16 columns]",
+            "KIND",
+            "With --input, of rows without a header: rpy, quaternion (w x y z), quaternion-xyzw, euler (Z Y "
+            "Z), rotvec, abc, wpr or matrix.  [default: rpy, or matrix for 16 columns]",
         ),
     ] = None,
     drop: DropOption = False,
-    output: ArrayOutputOption = None,
-    format: FormatOption = None,
-    json: JsonOption = False,
-    angle: AngleOption = None,
-    length: LengthOption = None,
-    set_: SetOption = None,
+    output: ArrayOutputOptions,
+    description: DescriptionOptions,
 ) -> int:
     """Inverse kinematics: every joint configuration that reaches a pose.
 
@@ -161,26 +109,18 @@ def command(
     """
     from itertools import chain
 
-    from robokin.cli.answers import RECORD_KEYS, Answers, csv_columns
-    from robokin.cli.arguments import joint_factors, load_robot, parse_configuration
+    from robokin.cli.arguments import parse_configuration
     from robokin.cli.held_joints import parse_hold
-    from robokin.cli.output.numbers import counted
-    from robokin.cli.output.sink import format_of, sink
-    from robokin.cli.statuses import say
     from robokin.cli.targets import parse_target
-    from robokin.errors import InputError
+    from robokin.model.joint_units import joint_factors
+    from robokin.records.solution_records import RECORD_KEYS, SolutionRecords
+    from robokin.reports.solution_report import SolutionReport, csv_columns
     from robokin.tables.carried import Carried
     from robokin.tables.target_rows import Targets
 
-    kind = format_of(output, output_format(format, json), arrays=True)
-    model = load_robot(robot, parameter_overrides(set_))
-    if not model.n:
-        raise InputError(f"{model.name} has no joints, expected a robot that can move")
-    units = effective_units(model.units, length, angle)
-    options = target_texts(pose, matrix, xyz, rpy, euler, quat, approach, xy, phi)
-    given = [name for name, value in options.items() if value is not None]
-    if input is not None and given:
-        raise InputError(f"--input and {given[0]} exclude each other, expected one of them")
+    kind = output.kind
+    model, units = description.moving_robot(robot)
+    target.exclude("--input", input)
     if input is None and (as_ is not None or drop):
         raise InputError(f"{'--as' if as_ is not None else '--drop'} is for rows of a file, expected --input with it")
     if explain:
@@ -207,11 +147,11 @@ def command(
     taken = csv_columns(model) if kind == "csv" else RECORD_KEYS
     carried = Carried(taken, say, wanted=not drop and kind in ("csv", "json", "jsonl"))
     if input is None:
-        target = parse_target(options, model, units)
-        for note in target.notes:
+        asked = parse_target(target.texts, model, units)
+        for note in asked.notes:
             say(note)
-        arguments["task"] = target.task
-        blocks: Iterable[Array] = iter([target.T[None]])
+        arguments["task"] = asked.task
+        blocks: Iterable[Array] = iter([asked.T[None]])
         if explain:
             from robokin.derivation.explain import require_lesson
 
@@ -223,13 +163,9 @@ def command(
         arguments["task"] = targets.task or "pose"
         blocks = chain([] if first is None else [first], arriving)
 
-    answers = Answers(
-        model, units, tolerances, arguments, alone=input is None, explain=explain, held=held, carried=carried
-    )
-    with sink(output) as stream:
-        for data in answers.write(kind, blocks, stream):
-            stream.write(data)
-            stream.flush()  # whoever waits for an answer gets it before the next question
+    records = SolutionRecords(model, units, arguments["task"], held)
+    answers = SolutionReport(records, tolerances, arguments, input is None, explain, carried)
+    answers.send(output.file, kind, blocks)
     if not answers.alone and answers.unreached:
         verb = "has" if answers.unreached == 1 else "have"
         say(f"{answers.unreached} of {counted(answers.count, 'target')} {verb} no solution")
@@ -238,8 +174,6 @@ def command(
 
 def _check_explain(kind: str, input: str | None, method: str | None, hold: list[str] | None) -> None:
     """Raise InputError for what a lesson does not go with."""
-    from robokin.errors import InputError
-
     if input is not None:
         raise InputError("--explain and --input exclude each other, expected one target, as --pose gives it")
     if hold:
@@ -253,7 +187,6 @@ def _check_explain(kind: str, input: str | None, method: str | None, hold: list[
 def _tolerance(text: str | None, option: str, units: Units, *, angle: bool) -> float | None:
     """A tolerance [m or rad]; None for none."""
     from robokin.cli.arguments import parse_numbers
-    from robokin.errors import InputError
 
     if text is None:
         return None
@@ -264,13 +197,6 @@ def _tolerance(text: str | None, option: str, units: Units, *, angle: bool) -> f
 
 
 def _count(text: str | None, option: str, least: int) -> int | None:
-    from robokin.errors import InputError
-
-    if text is None:
-        return None
-    digits = text.strip()
-    if not (digits.isascii() and digits.isdecimal()) or int(digits[:DIGITS]) < least:
-        raise InputError(f"{option}: found '{text}', expected a whole number of {least} or more")
-    if len(digits) > DIGITS:
+    if text is not None and (digits := text.strip()).isdecimal() and digits.isascii() and len(digits) > DIGITS:
         raise InputError(f"{option}: found a number of {len(digits)} digits, expected at most {DIGITS}")
-    return int(digits)
+    return whole_number(text, option, least, 2**63)

@@ -4,78 +4,54 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-import typer
-
 from robokin.cli.completion import named_poses, words
-from robokin.cli.options import (
-    AngleOption,
-    ArrayOutputOption,
-    DropOption,
-    FormatOption,
-    JsonOption,
-    LengthOption,
-    RobotArgument,
-    SetOption,
-    choose,
-    effective_units,
-    output_format,
-    parameter_overrides,
-)
+from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
+from robokin.cli.options import DropOption, RobotArgument, choose, option
+from robokin.cli.statuses import say
 
 FRAMES = ("base", "tool")
 TASKS = ("pose", "position", "orientation")
 
 TaskOption = Annotated[
     str | None,
-    typer.Option(
+    option(
         "--task",
-        metavar="TASK",
-        help="What counts: pose, position or orientation.  [default: position or orientation for arms of up to three "
-        "joints that place a point or turn the tool, else pose]",
-        autocompletion=words(*TASKS),
+        "TASK",
+        "What counts: pose, position or orientation.  [default: position or orientation for arms of up "
+        "to three joints that place a point or turn the tool, else pose]",
+        words(*TASKS),
     ),
 ]
 
 
 def command(
     robot: RobotArgument,
+    *,
     q: Annotated[
         list[str] | None,
-        typer.Option(
+        option(
             "--q",
-            metavar="Q",
-            help="Joint values, or the name of a pose of the description; - for a configuration a line on standard "
-            "input. Repeatable.",
-            autocompletion=named_poses,
+            "Q",
+            "Joint values, or the name of a pose of the description; - for a configuration a line on "
+            "standard input. Repeatable.",
+            named_poses,
         ),
     ] = None,
     input: Annotated[
         str | None,
-        typer.Option(
-            "--input",
-            "-i",
-            metavar="FILE",
-            help="A configuration a line: .csv (with a header or without), .jsonl, .json or .npy; - for standard "
-            "input.",
+        option(
+            "--input -i",
+            "FILE",
+            "A configuration a line: .csv (with a header or without), .jsonl, .json or .npy; - for standard input.",
         ),
     ] = None,
     frame: Annotated[
-        str | None,
-        typer.Option(
-            "--frame",
-            metavar="FRAME",
-            help="The twist's axes: base or tool.  [default: base]",
-            autocompletion=words(*FRAMES),
-        ),
+        str | None, option("--frame", "FRAME", "The twist's axes: base or tool.  [default: base]", words(*FRAMES))
     ] = None,
     task: TaskOption = None,
     drop: DropOption = False,
-    output: ArrayOutputOption = None,
-    format: FormatOption = None,
-    json: JsonOption = False,
-    angle: AngleOption = None,
-    length: LengthOption = None,
-    set_: SetOption = None,
+    output: ArrayOutputOptions,
+    description: DescriptionOptions,
 ) -> int:
     """The geometric Jacobian: twist of the tool = J times joint rates, linear part before angular part.
 
@@ -89,23 +65,16 @@ def command(
         robokin jacobian planar2r --q 30,60 --task position
         robokin jacobian puma560 --input joints.csv --output jacobians.npy
     """
-    from robokin.cli.arguments import load_robot
     from robokin.cli.configurations import configurations
-    from robokin.cli.jacobians import Jacobians, taken_by
-    from robokin.cli.output.sink import format_of, sink
-    from robokin.cli.statuses import say
+    from robokin.records.jacobian_records import JacobianRecords
+    from robokin.reports.jacobian_report import JacobianReport, taken_by
     from robokin.tables.carried import Carried
 
-    kind = format_of(output, output_format(format, json), arrays=True)
+    kind = output.kind
     axes: Any = choose(frame, FRAMES, "--frame") or "base"
     counted: Any = choose(task, TASKS, "--task")
-    model = load_robot(robot, parameter_overrides(set_))
-    units = effective_units(model.units, length, angle)
+    model, units = description.robot(robot)
     carried = Carried(taken_by(kind, model.n), say, wanted=not drop and kind in ("csv", "json", "jsonl"))
     blocks, _, alone = configurations(model, units, q, input, carried)
-    answers = Jacobians(model, units, axes, counted, alone, carried)
-    with sink(output) as stream:
-        for data in answers.write(kind, blocks, stream):
-            stream.write(data)
-            stream.flush()  # whoever waits for an answer gets it before the next question
+    JacobianReport(JacobianRecords(model, units, axes, counted), alone, carried).send(output.file, kind, blocks)
     return 0

@@ -7,32 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robokin.cli.completion import named_poses, words
-from robokin.cli.options import (
-    AngleOption,
-    ArrayOutputOption,
-    FormatOption,
-    JsonOption,
-    LengthOption,
-    RobotArgument,
-    SetOption,
-    choose,
-    effective_units,
-    output_format,
-    parameter_overrides,
-)
-from robokin.cli.statuses import DONE, NO
-from robokin.cli.target_options import (
-    ApproachOption,
-    EulerOption,
-    MatrixOption,
-    PhiOption,
-    PoseOption,
-    QuatOption,
-    RpyOption,
-    XyOption,
-    XyzOption,
-    target_texts,
-)
+from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
+from robokin.cli.options import RobotArgument, choose, option, whole_number
+from robokin.cli.statuses import DONE, NO, say
+from robokin.cli.target_options import TargetOptions
+from robokin.errors import InputError
 
 if TYPE_CHECKING:
     from robokin.arrays import Array
@@ -49,50 +28,29 @@ STEPS = 100
 
 def command(
     robot: RobotArgument,
+    *,
     from_: Annotated[
-        str | None,
-        typer.Option(
-            "--from", metavar="Q", help="Where it starts: joint values, or a named pose.", autocompletion=named_poses
-        ),
+        str | None, option("--from", "Q", "Where it starts: joint values, or a named pose.", named_poses)
     ] = None,
-    to: Annotated[
-        str | None,
-        typer.Option(
-            "--to", metavar="Q", help="Where it ends: joint values, or a named pose.", autocompletion=named_poses
-        ),
-    ] = None,
-    pose: PoseOption = None,
-    matrix: MatrixOption = None,
-    xyz: XyzOption = None,
-    rpy: RpyOption = None,
-    euler: EulerOption = None,
-    quat: QuatOption = None,
-    approach: ApproachOption = None,
-    xy: XyOption = None,
-    phi: PhiOption = None,
-    steps: Annotated[
-        str | None, typer.Option("--steps", metavar="N", help="Steps; a row more is written.  [default: 100]")
-    ] = None,
+    to: Annotated[str | None, option("--to", "Q", "Where it ends: joint values, or a named pose.", named_poses)] = None,
+    target: TargetOptions,
+    steps: Annotated[str | None, option("--steps", "N", "Steps; a row more is written.  [default: 100]")] = None,
     joint: Annotated[
         bool, typer.Option("--joint", help="All joints together, each from its value to the other; the default.")
     ] = False,
     line: Annotated[bool, typer.Option("--line", help="The tool in a straight line, on one branch.")] = False,
     task: Annotated[
         str | None,
-        typer.Option(
+        option(
             "--task",
-            metavar="TASK",
-            help="What follows the line: pose or position.  [default: position for arms that place a point, else pose]",
-            autocompletion=words(*TASKS),
+            "TASK",
+            "What follows the line: pose or position.  [default: position for arms that place a point, else pose]",
+            words(*TASKS),
         ),
     ] = None,
     no_limits: Annotated[bool, typer.Option("--no-limits", help="Also outside the joint limits.")] = False,
-    output: ArrayOutputOption = None,
-    format: FormatOption = None,
-    json: JsonOption = False,
-    angle: AngleOption = None,
-    length: LengthOption = None,
-    set_: SetOption = None,
+    output: ArrayOutputOptions,
+    description: DescriptionOptions,
 ) -> int:
     """A path with a quintic time law: at rest at both ends, t from 0 to 1.
 
@@ -108,43 +66,37 @@ def command(
         robokin path planar3r --from 10,40,20 --xy 0.9,1.2 --phi 90 --line -f csv
         robokin path scara --from 0,60,100,0 --to 40,30,50,90 --json
     """
-    from robokin.cli.arguments import joint_factors, load_robot, parse_configuration
-    from robokin.cli.output.sink import format_of, sink
-    from robokin.cli.paths import PathAnswer
-    from robokin.cli.statuses import say
-    from robokin.errors import InputError
+    from robokin.cli.arguments import parse_configuration
+    from robokin.inverse.follow import MOST
+    from robokin.model.joint_units import joint_factors
+    from robokin.records.path_records import PathRecords
+    from robokin.reports.path_report import PathReport
+    from robokin.tables.sink import sink
 
-    kind = format_of(output, output_format(format, json), arrays=True)
+    kind = output.kind
     if joint and line:
         raise InputError("--joint and --line exclude each other, expected one of them")
     if task is not None and not line:
         raise InputError("--task goes with --line, which needs to know what follows the line")
     chosen: Any = choose(task, TASKS, "--task")
-    count = _steps(steps)
-    model = load_robot(robot, parameter_overrides(set_))
-    if not model.n:
-        raise InputError(f"{model.name} has no joints, expected a robot that can move")
-    units = effective_units(model.units, length, angle)
+    count = whole_number(steps, "--steps", 1, MOST) or STEPS
+    model, units = description.moving_robot(robot)
     factors = joint_factors(model, units)
     if from_ is None:
         example = ",".join(["0"] * model.n)
         raise InputError(f"--from is missing, expected {model.n} values or a named pose, such as --from {example}")
     start = parse_configuration(from_, model, units, "--from") * factors
-    targets = target_texts(pose, matrix, xyz, rpy, euler, quat, approach, xy, phi)
-    given = [name for name, value in targets.items() if value is not None]
-    if to is not None and given:
-        raise InputError(f"--to and {given[0]} exclude each other, expected one of them")
-    if to is None and not given:
+    target.exclude("--to", to)
+    if to is None and not target.given:
         raise InputError("there is no end, expected --to, --pose, --matrix, --xyz or --xy")
     end = None if to is None else parse_configuration(to, model, units, "--to") * factors
-    path = _path(model, units, start, end, targets, count, line, not no_limits, chosen)
-    answer = PathAnswer(model, units, "line" if line else "joint", path, None if not line else end)
+    path = _path(model, units, start, end, target.texts, count, line, not no_limits, chosen)
+    answer = PathReport(PathRecords(path, units), end if line else None)
     if kind not in ("table", "json"):
         for sentence in answer.notes():
             say(sentence)
-    with sink(output) as stream:
-        for data in answer.write(kind, stream):
-            stream.write(data)
+    with sink(output.file) as stream:
+        stream.writelines(answer.write(kind, stream))
     return DONE if path.complete else NO
 
 
@@ -162,58 +114,21 @@ def _path(
     """The path."""
     import numpy as np
 
-    from robokin.cli.statuses import say
     from robokin.cli.targets import parse_target
-    from robokin.errors import InputError
-    from robokin.inverse.joint_paths import follow_line, interpolate_joints, line_task, no_path
-    from robokin.inverse.solutions import Result
-    from robokin.inverse.solve import solve_ik
+    from robokin.inverse.joint_paths import follow_line, interpolate_joints
+    from robokin.inverse.paths_to_poses import path_to_pose
     from robokin.kinematics.forward import forward_kinematics
 
     with np.errstate(over="ignore", invalid="ignore"):
-        first = forward_kinematics(robot, start)
-        last = None if end is None else forward_kinematics(robot, end)
+        poses = [forward_kinematics(robot, q) for q in (start, end) if q is not None]
     # Squares of what is larger are no numbers.
-    if any(T is not None and not np.all(np.abs(T) < 1e100) for T in (first, last)):
+    if any(not np.all(np.abs(T) < 1e100) for T in poses):
         raise InputError("the pose is too far away for a number, expected less")
-    if end is not None and not line:
+    if end is not None:
+        if line:
+            return follow_line(robot, start, poses[-1], steps, limits, task)
         return interpolate_joints(robot, start, end, steps, limits)
-    if last is None:
-        target = parse_target(targets, robot, units)
-        for note in target.notes:
-            say(note)
-        last, asked = target.T, target.task
-        if asked == "position" and line_task(robot) == "pose":
-            last = last.copy()
-            last[:3, :3] = first[:3, :3]
-        elif asked == "position":
-            task = task or "position"
-        elif asked == "approach" and line:
-            # The roll about the tool's axis is free: that of the solution nearest to the start.
-            found = solve_ik(robot, last, limits=limits, near=start, task="approach", most=1)
-            assert isinstance(found, Result)
-            if not found.solutions:
-                return no_path(robot, start, found.reason or "not reached", steps)
-            last = forward_kinematics(robot, found.solutions[0].q)
-    if line:
-        return follow_line(robot, start, last, steps, limits, task)
-    wanted = "approach" if asked == "approach" else task or line_task(robot)
-    result = solve_ik(robot, last, limits=limits, near=start, task=wanted, most=1)
-    assert isinstance(result, Result)
-    if not result.solutions:
-        return no_path(robot, start, result.reason or "not reached", steps)
-    return interpolate_joints(robot, start, result.solutions[0].q, steps, limits)
-
-
-def _steps(text: str | None) -> int:
-    from robokin.errors import InputError
-    from robokin.inverse.follow import MOST
-
-    if text is None:
-        return STEPS
-    digits = text.strip()
-    if not (digits.isascii() and digits.isdecimal()) or len(digits) > 18 or not 1 <= int(digits) <= MOST:
-        from robokin.errors import shown
-
-        raise InputError(f"--steps: found '{shown(text)}', expected a whole number from 1 to {MOST}")
-    return int(digits)
+    target = parse_target(targets, robot, units)
+    for note in target.notes:
+        say(note)
+    return path_to_pose(robot, start, target.T, target.task, steps, line=line, limits=limits, follows=task)

@@ -7,85 +7,55 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robokin.cli.completion import named_poses
-from robokin.cli.options import (
-    AngleOption,
-    FormatOption,
-    JsonOption,
-    LengthOption,
-    RobotArgument,
-    SetOption,
-    effective_units,
-    output_format,
-    parameter_overrides,
-)
-from robokin.cli.statuses import DONE, NO
-from robokin.cli.target_options import (
-    ApproachOption,
-    EulerOption,
-    MatrixOption,
-    PhiOption,
-    PoseOption,
-    QuatOption,
-    RpyOption,
-    XyOption,
-    XyzOption,
-    target_texts,
-)
+from robokin.cli.option_groups import DescriptionOptions
+from robokin.cli.options import FormatOption, JsonOption, RobotArgument, option, output_format
+from robokin.cli.statuses import DONE, NO, say
+from robokin.cli.target_options import TargetOptions
+from robokin.errors import InputError, shown
 
 if TYPE_CHECKING:
-    from robokin.model import Mechanism
+    from collections.abc import Iterable
+
+    from robokin.cli.targets import Target
+    from robokin.model import Mechanism, Robot
     from robokin.units import Units
 
 
 def command(
     robot: RobotArgument,
+    *,
     q: Annotated[
         list[str] | None,
-        typer.Option(
+        option(
             "--q",
-            metavar="Q",
-            help="Joint values, or the name of a pose of the description. Repeatable: all but the first are drawn "
+            "Q",
+            "Joint values, or the name of a pose of the description. Repeatable: all but the first are drawn "
             "pale.  [default: home, else zero]",
-            autocompletion=named_poses,
+            named_poses,
         ),
     ] = None,
     ik: Annotated[
         str | None,
-        typer.Option(
+        option(
             "--ik",
-            metavar="EXPR",
-            help="A target, as a transform expression or X,Y,Z: all solutions. Or the target options of `robokin ik`.",
+            "EXPR",
+            "A target, as a transform expression or X,Y,Z: all solutions. Or the target options of `robokin ik`.",
         ),
     ] = None,
-    pose: PoseOption = None,
-    matrix: MatrixOption = None,
-    xyz: XyzOption = None,
-    rpy: RpyOption = None,
-    euler: EulerOption = None,
-    quat: QuatOption = None,
-    approach: ApproachOption = None,
-    xy: XyOption = None,
-    phi: PhiOption = None,
+    target: TargetOptions,
     frames: Annotated[bool, typer.Option("--frames", help="Also the frame after each row of the table.")] = False,
     view: Annotated[
-        str | None,
-        typer.Option(
-            "--view", metavar="AZ,EL", help="Azimuth and elevation of the eye in degrees.  [default: -58,22 or flat]"
-        ),
+        str | None, option("--view", "AZ,EL", "Azimuth and elevation of the eye in degrees.  [default: -58,22 or flat]")
     ] = None,
     mode: Annotated[
-        str | None,
-        typer.Option("--mode", metavar="N", help="Which way to put a mechanism's links of given lengths together."),
+        str | None, option("--mode", "N", "Which way to put a mechanism's links of given lengths together.")
     ] = None,
     output: Annotated[
-        str | None,
-        typer.Option("--output", "-o", metavar="FILE", help="Draw to .png, .svg, .pdf, or .html that turns."),
+        str | None, option("--output -o", "FILE", "Draw to .png, .svg, .pdf, or .html that turns.")
     ] = None,
     format: FormatOption = None,
     json: JsonOption = False,
-    angle: AngleOption = None,
-    length: LengthOption = None,
-    set_: SetOption = None,
+    description: DescriptionOptions,
 ) -> int:
     """A picture of an arm or a mechanism: links, joints by kind, frames, and every solution of a target.
 
@@ -105,33 +75,34 @@ def command(
         robokin plot planar3r --xy 0.9,1.2 --phi 90
         robokin plot bennett -o bennett.html
     """
+    from dataclasses import replace
+
     import numpy as np
 
-    from robokin.cli.arguments import joint_factors, load_entry, load_robot, parse_configuration, way_of
-    from robokin.cli.output.sink import sink
-    from robokin.cli.plots import FARTHEST, answer, asked, ending_of, scene_of, view_of, wanted_target
-    from robokin.cli.poses import PoseMaker
-    from robokin.cli.statuses import say
-    from robokin.errors import InputError
-    from robokin.kinematics.forward import joint_frames
+    from robokin.cli.arguments import parse_configuration, way_of
+    from robokin.inverse.solutions import Question
     from robokin.model import Mechanism
+    from robokin.model.joint_units import joint_factors
     from robokin.pictures.arm import default_configuration
+    from robokin.pictures.drawn_arm import AskedPostures, arm_picture, given_postures, scene_of, solved_postures
+    from robokin.pictures.picture_files import picture_ending
+    from robokin.records.pose_blocks import PoseMaker
+    from robokin.reports.picture_report import arms_written
+    from robokin.tables.sink import sink
 
-    options = target_texts(pose, matrix, xyz, rpy, euler, quat, approach, xy, phi)
     kind = output_format(format, json)
     if output is not None and kind is not None:
         raise InputError("--output draws a picture by the file's ending, expected no --format and no --json")
-    ending = ending_of(output) if output is not None else ""
-    eye = view_of(view)
-    loaded = load_entry(robot, parameter_overrides(set_), way_of(mode))
+    ending = picture_ending(output, "--output") if output is not None else ""
+    eye = _view(view)
+    loaded = description.entry(robot, way_of(mode))
     if isinstance(loaded, Mechanism):
-        for option, value in (("--q", q), ("--ik", ik), *options.items(), ("--frames", frames)):
+        for option, value in (("--q", q), ("--ik", ik), *target.texts.items(), ("--frames", frames)):
             if value:
                 raise InputError(f"{option} is for robots, expected none for a mechanism: `robokin dof` has --drive")
-        _draw_mechanism(loaded, effective_units(loaded.units, length, angle), kind, output, eye)
+        _draw_mechanism(loaded, description.over(loaded.units), kind, output, eye)
         return DONE
-    model = load_robot(robot, parameter_overrides(set_))
-    units = effective_units(model.units, length, angle)
+    model, units = description.robot(robot)
     if q and "-" in q:
         raise InputError("--q: found '-', expected joint values or the name of a pose; a picture reads no input")
     values = [parse_configuration(text, model, units) for text in q or []]
@@ -141,35 +112,23 @@ def command(
     given, name = [value * joint_factors(model, units) for value in values], ""
     if q and q[0].strip() in model.poses:
         name = q[0].strip()
-    target = wanted_target(ik, options, model, units)
-    if not given and target is None:
+    asked = _wanted_target(ik, target, model, units)
+    if not given and asked is None:
         home, name = default_configuration(model)
         given = [home]
-    wanted = asked(model, units, given, target)
+    if asked is None:
+        wanted = AskedPostures(given_postures(model, units, given))
+    else:
+        wanted = solved_postures(Question(model, asked.T, asked.task), units, given, asked.notes)
     if not wanted.postures:
         home, name = default_configuration(model)
-        wanted = type(wanted)(asked(model, units, [home], None).postures, wanted.target, wanted.result, wanted.notes)
-    for posture in wanted.postures:
-        if not np.max(np.abs(joint_frames(model, posture.q)[:, :3, 3])) < FARTHEST:
-            raise InputError("--q: the arm is too long for a picture, expected smaller values")
+        wanted = replace(wanted, postures=given_postures(model, units, [home]))
+    scene = scene_of(model, units, wanted, name, eye, frames, "--q")
     for note in wanted.notes:
         say(note)
-    scene = scene_of(model, units, wanted, name, eye, frames)
-    if output is None:
-        with sink(None) as stream:
-            for data in answer(kind or "table", scene, wanted):
-                stream.write(data)
-    else:
-        if ending == ".html":
-            from robokin.pictures.arm_page import arm_page
-
-            data = arm_page(scene)
-        else:
-            from robokin.pictures.arm_stills import arm_still
-
-            data = arm_still(scene, ending[1:])
-        with sink(output) as stream:
-            stream.write(data)
+    drawn = arms_written(kind or "table", scene, wanted) if output is None else [arm_picture(scene, ending[1:])]
+    with sink(output) as stream:
+        stream.writelines(drawn)
     return NO if wanted.unreachable else DONE
 
 
@@ -179,20 +138,71 @@ def _draw_mechanism(
     """Write a mechanism's picture, or what it shows."""
     from pathlib import Path
 
-    from robokin.cli.mechanism_plots import answer, check_drawable, motion_to_draw, picture_of
-    from robokin.cli.output.sink import sink
-    from robokin.cli.statuses import say
+    from robokin.pictures.drawn_mechanism import check_drawable, motion_to_draw, picture_of
     from robokin.pictures.mechanism_scene import mechanism_scene
+    from robokin.reports.picture_report import mechanism_written
+    from robokin.tables.sink import sink
 
     check_drawable(mechanism, output, "--output")
     if output is None:
-        with sink(None) as stream:
-            for data in answer(kind or "table", mechanism_scene(mechanism, None, None, units, eye)):
-                stream.write(data)
-        return
-    moved, note = motion_to_draw(mechanism)
-    if note:
-        say(f"drawn as it stands: {note}")
-    picture = picture_of(mechanism, moved, None, units, Path(output).suffix.lower(), eye)
+        drawn: Iterable[bytes] = mechanism_written(kind or "table", mechanism_scene(mechanism, None, None, units, eye))
+    else:
+        moved, note = motion_to_draw(mechanism)
+        if note:
+            say(f"drawn as it stands: {note}")
+        drawn = [picture_of(mechanism, moved, None, units, Path(output).suffix.lower(), eye)]
     with sink(output) as stream:
-        stream.write(picture)
+        stream.writelines(drawn)
+
+
+def _view(text: str | None) -> tuple[float, float] | None:
+    """Azimuth and elevation [°] of --view. Raises InputError."""
+    from robokin.cli.arguments import parse_numbers
+    from robokin.units import Units
+
+    if text is None:
+        return None
+    azimuth, elevation = parse_numbers(text, "--view", [True] * 2, Units(angle="deg"), "azimuth, elevation in degrees")
+    if abs(elevation) > 90.0 or abs(azimuth) > 360.0:
+        raise InputError(f"--view: found {text}, expected an azimuth within ±360 and an elevation within ±90 degrees")
+    return float(azimuth), float(elevation)
+
+
+def _ik_target(text: str, robot: Robot, units: Units) -> Target:
+    """The target of --ik: a transform expression, a matrix, a position x, y, z alone, or x, y of a planar arm."""
+    from robokin.cli.arguments import split_vector
+    from robokin.kinematics.structure import structure_of
+
+    if not text.strip():
+        raise InputError("--ik: found nothing, expected x,y,z or a transform expression")
+    if text.lstrip().startswith("[["):
+        return _target({"--matrix": text}, robot, units)
+    # With a comma more, what commas outside parentheses separate is told from an expression.
+    count = len(split_vector(text.strip().removeprefix("[").removesuffix("]") + ",0")) - 1
+    if count > 3 or (count == 2 and structure_of(robot).arm != "planar"):
+        raise InputError(f"--ik: found {count} values in '{shown(text)}', expected x,y,z or a transform expression")
+    return _target({{2: "--xy", 3: "--xyz"}.get(count, "--pose"): text}, robot, units)
+
+
+def _target(options: dict[str, str | None], robot: Robot, units: Units) -> Target:
+    """The target that one of the options of `robokin ik` says, whose messages name --ik."""
+    import re
+
+    from robokin.cli.targets import parse_target
+
+    try:
+        return parse_target(options, robot, units)
+    except InputError as error:
+        raise InputError(re.sub(rf"{next(iter(options))}\b", "--ik", str(error))) from None
+
+
+def _wanted_target(ik: str | None, options: TargetOptions, robot: Robot, units: Units) -> Target | None:
+    """The target of --ik, or of the options that `robokin ik` has; None without. Raises InputError for both."""
+    from robokin.cli.targets import parse_target
+
+    options.exclude("--ik", ik)
+    if (ik is not None or options.given) and not robot.n:
+        raise InputError(f"{robot.name} has no joints, expected a robot that can move")
+    if ik is not None:
+        return _ik_target(ik, robot, units)
+    return parse_target(options.texts, robot, units) if options.given else None

@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from robokin.cli.options import FormatOption, JsonOption, output_format
+from robokin.cli.options import FormatOption, JsonOption, option, output_format
+from robokin.errors import InputError, shown
 
 
 def command(
@@ -19,9 +20,7 @@ def command(
             show_default=False,
         ),
     ] = None,
-    output: Annotated[
-        str | None, typer.Option("--output", "-o", metavar="FILE", help="Write to a file that ends with .json.")
-    ] = None,
+    output: Annotated[str | None, option("--output -o", "FILE", "Write to a file that ends with .json.")] = None,
     format: FormatOption = None,
     json: JsonOption = False,
 ) -> int:
@@ -37,9 +36,8 @@ def command(
     """
     from json import dumps
 
-    from robokin.cli.output.sink import format_of, sink
-    from robokin.cli.output.text import json_line
-    from robokin.errors import InputError
+    from robokin.tables.sink import format_of, sink
+    from robokin.tables.written_rows import json_line
 
     kind = format_of(output, output_format(format, json))
     if kind == "csv" or (output is not None and kind != "json"):
@@ -56,7 +54,6 @@ def _schema(words: list[str]) -> dict[str, Any]:
         from robokin.formats.schema import json_schema
 
         return json_schema()
-    from robokin.errors import InputError, shown
     from robokin.records.schemas import document_schema
 
     if len(words) > 2:

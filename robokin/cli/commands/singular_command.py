@@ -5,30 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from robokin.cli.commands.jacobian_command import TASKS, TaskOption
-from robokin.cli.options import (
-    AngleOption,
-    FormatOption,
-    JsonOption,
-    LengthOption,
-    OutputOption,
-    RobotArgument,
-    SetOption,
-    choose,
-    effective_units,
-    output_format,
-    parameter_overrides,
-)
+from robokin.cli.option_groups import DescriptionOptions, OutputOptions
+from robokin.cli.options import RobotArgument, choose
 
 
 def command(
-    robot: RobotArgument,
-    task: TaskOption = None,
-    output: OutputOption = None,
-    format: FormatOption = None,
-    json: JsonOption = False,
-    angle: AngleOption = None,
-    length: LengthOption = None,
-    set_: SetOption = None,
+    robot: RobotArgument, *, task: TaskOption = None, output: OutputOptions, description: DescriptionOptions
 ) -> int:
     """The singular configurations of an arm, with the conditions on its joints.
 
@@ -41,29 +23,25 @@ def command(
         robokin singular anthropomorphic --json
         robokin singular planar3r -f csv
     """
-    from robokin.cli.arguments import load_robot
-    from robokin.cli.output.sink import format_of, sink
-    from robokin.cli.output.text import csv_records, json_document, json_line
-    from robokin.cli.singularities import COLUMNS, page, row, singular_record
     from robokin.kinematics.singular import singular_configurations
-    from robokin.kinematics.velocity import motion_task
+    from robokin.records.singularity_records import COLUMNS, row, singular_record
+    from robokin.tables.sink import sink
+    from robokin.tables.written_rows import csv_records, written
 
-    kind = format_of(output, output_format(format, json))
+    kind = output.kind
     counted: Any = choose(task, TASKS, "--task")
-    model = load_robot(robot, parameter_overrides(set_))
-    units = effective_units(model.units, length, angle)
-    whole = motion_task(model, counted)
+    model, units = description.robot(robot)
     found = singular_configurations(model, counted)
-    document = singular_record(model, units, counted)
+    document = singular_record(model, units, counted, found)
+    head = {name: value for name, value in document.items() if name != "singularities"}
     records = document["singularities"]
-    with sink(output) as stream:
-        if kind == "json":
-            stream.write(json_document(document))
-        elif kind == "jsonl":
-            head = {name: value for name, value in document.items() if name != "singularities"}
-            stream.writelines(json_line({**head, **record}) for record in records)
-        elif kind == "csv":
-            stream.write(csv_records(COLUMNS, map(row, records)))
-        else:
-            stream.write(page(model, units, whole.name, found))
+
+    def page() -> bytes:
+        from robokin.reports.singularity_pages import singularity_page
+
+        return singularity_page(model, units, document["task"], found)
+
+    with sink(output.file) as stream:
+        lines = ({**head, **record} for record in records)
+        stream.writelines(written(kind, document, lines, lambda: csv_records(COLUMNS, map(row, records)), page))
     return 0

@@ -7,24 +7,27 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robokin.cli.completion import robots, words
+from robokin.cli.option_groups import DescriptionOptions
 from robokin.cli.options import (
-    AngleOption,
     AsOption,
     FormatOption,
     JsonOption,
-    LengthOption,
     RobotArgument,
-    SetOption,
     choose,
-    effective_units,
+    option,
     output_format,
-    parameter_overrides,
+    whole_number,
 )
-from robokin.cli.statuses import DONE, NO
+from robokin.cli.statuses import DONE, NO, say
+from robokin.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robokin.model import Robot
+    from robokin.pictures.views import View
     from robokin.units import Units
+    from robokin.workspace.space import Space
 
 SAMPLINGS = ("sobol", "random", "grid")
 HELD = ("joints", "poses")
@@ -38,70 +41,42 @@ MOST_CORES = 1024
 
 def command(
     robot: RobotArgument,
-    samples: Annotated[
-        str | None, typer.Option("--samples", "-n", metavar="N", help="Number of points.  [default: 131072]")
-    ] = None,
-    seed: Annotated[str | None, typer.Option("--seed", metavar="N", help="Random seed.  [default: 0]")] = None,
+    *,
+    samples: Annotated[str | None, option("--samples -n", "N", "Number of points.  [default: 131072]")] = None,
+    seed: Annotated[str | None, option("--seed", "N", "Random seed.  [default: 0]")] = None,
     sampling: Annotated[
-        str | None,
-        typer.Option(
-            "--sampling",
-            metavar="KIND",
-            help="sobol (even), random or grid.  [default: sobol]",
-            autocompletion=words(*SAMPLINGS),
-        ),
+        str | None, option("--sampling", "KIND", "sobol (even), random or grid.  [default: sobol]", words(*SAMPLINGS))
     ] = None,
     dextrous: Annotated[
         bool, typer.Option("--dextrous", help="Also how freely the tool can be turned, place by place.")
     ] = False,
-    voxel: Annotated[
-        str | None, typer.Option("--voxel", metavar="L", help="Side of the cells of the map of --dextrous.")
-    ] = None,
+    voxel: Annotated[str | None, option("--voxel", "L", "Side of the cells of the map of --dextrous.")] = None,
     at: Annotated[
         list[str] | None,
-        typer.Option(
-            "--at", metavar="X,Y,Z", help="Is it reachable, with which orientations? X,Y for a planar arm. Repeatable."
-        ),
+        option("--at", "X,Y,Z", "Is it reachable, with which orientations? X,Y for a planar arm. Repeatable."),
     ] = None,
     section: Annotated[
         bool, typer.Option("--section", help="The half plane that the first joint turns: its area and boundary.")
     ] = False,
     slice_: Annotated[
-        list[str] | None,
-        typer.Option("--slice", metavar="z=H", help="The plane x, y or z at a length: area, boundary. Repeatable."),
+        list[str] | None, option("--slice", "z=H", "The plane x, y or z at a length: area, boundary. Repeatable.")
     ] = None,
-    compare: Annotated[
-        str | None, typer.Option("--compare", metavar="ROBOT", help="Another robot beside it.", autocompletion=robots)
-    ] = None,
-    plot: Annotated[
-        str | None,
-        typer.Option("--plot", "-p", metavar="FILE", help="Draw to .png, .svg, .pdf, or .html that turns."),
-    ] = None,
+    compare: Annotated[str | None, option("--compare", "ROBOT", "Another robot beside it.", robots)] = None,
+    plot: Annotated[str | None, option("--plot -p", "FILE", "Draw to .png, .svg, .pdf, or .html that turns.")] = None,
     output: Annotated[
-        str | None,
-        typer.Option("--output", "-o", metavar="FILE", help="Write the samples, to .csv, .jsonl, .npy or .ply."),
+        str | None, option("--output -o", "FILE", "Write the samples, to .csv, .jsonl, .npy or .ply.")
     ] = None,
     with_: Annotated[
-        str | None,
-        typer.Option(
-            "--with",
-            metavar="WHAT",
-            help="What --output has beside positions: joints, poses or both.",
-            autocompletion=words(*HELD),
-        ),
+        str | None, option("--with", "WHAT", "What --output has beside positions: joints, poses or both.", words(*HELD))
     ] = None,
     as_: AsOption = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with a file of --output that was interrupted.")
     ] = False,
-    cores: Annotated[
-        str | None, typer.Option("--cores", metavar="N", help="Cores to work on; the answer is the same.")
-    ] = None,
+    cores: Annotated[str | None, option("--cores", "N", "Cores to work on; the answer is the same.")] = None,
     format: FormatOption = None,
     json: JsonOption = False,
-    angle: AngleOption = None,
-    length: LengthOption = None,
-    set_: SetOption = None,
+    description: DescriptionOptions,
 ) -> int:
     """What an arm can reach: bounds, volume or area with its error, holes, and how freely the tool turns.
 
@@ -123,30 +98,29 @@ def command(
         robokin workspace puma560 --samples 1000 --with joints --output cloud.csv
     """
     from robokin.cli.arguments import load_robot, parse_numbers
-    from robokin.errors import InputError
 
     kind = output_format(format, json) or "table"
-    count = _whole(samples, "--samples", 1, MOST_SAMPLES)
+    count = whole_number(samples, "--samples", 1, MOST_SAMPLES, grouped=True)
     arguments: dict[str, Any] = {
         "samples": 131072 if count is None else count,
-        "seed": _whole(seed, "--seed", 0, 2**63 - 1) or 0,
+        "seed": whole_number(seed, "--seed", 0, 2**63 - 1, grouped=True) or 0,
         "sampling": choose(sampling, SAMPLINGS, "--sampling") or "sobol",
-        "cores": _whole(cores, "--cores", 1, MOST_CORES),
+        "cores": whole_number(cores, "--cores", 1, MOST_CORES, grouped=True),
     }
     _one_question({"--at": at, "--compare": compare, "--output": output}, {"--dextrous": dextrous, "--section": section,
                   "--slice": slice_, "--plot": plot, "--voxel": voxel})  # fmt: skip
     if voxel is not None and not dextrous:
         raise InputError("--voxel: is the side of the cells of the map, expected --dextrous with it")
-    for option, value in (("--with", with_), ("--as", as_), ("--resume", resume)):
+    for name, value in (("--with", with_), ("--as", as_), ("--resume", resume)):
         if value and output is None:
-            raise InputError(f"{option}: says what is written to a file, expected --output FILE with it")
+            raise InputError(f"{name}: says what is written to a file, expected --output FILE with it")
     if plot is not None:
-        from robokin.cli.workspace_report import require_drawable
+        from robokin.pictures.picture_files import picture_ending
+        from robokin.tables.sink import Destination
 
-        require_drawable(plot)
-    overrides = parameter_overrides(set_)
-    model = load_robot(robot, overrides)
-    units = effective_units(model.units, length, angle)
+        picture_ending(plot, "--plot")
+        Destination(plot, "--plot")
+    model, units = description.robot(robot)
     if at:
         return _places(model, units, kind, at, arguments)
     if output is not None:
@@ -160,22 +134,52 @@ def command(
         if not side > 0.0:
             raise InputError(f"--voxel: found {voxel}, expected a length greater than 0")
         arguments["voxel"] = float(side) * units.metres
-    from robokin.cli.workspace_report import report
-
     robots = [model] if compare is None else [model, load_robot(compare, {})]
+    return _analyse(robots, units, kind, (section, slice_ or []), plot, arguments)
+
+
+def _analyse(
+    robots: list[Robot], units: Units, kind: str, asked: tuple[bool, list[str]], plot: str | None,
+    arguments: dict[str, Any],
+) -> int:  # fmt: skip
+    """The workspaces of one robot or two; `asked` tells whether for the section, and for which slices."""
+    from pathlib import Path
+
     from robokin.cli.progress import Stages
+    from robokin.jobs.stages import about, stage
+    from robokin.pictures.workspace_cuts import cut_of
+    from robokin.reports.workspace_pictures import plates_of, workspace_picture
+    from robokin.reports.workspace_report import workspaces_written
+    from robokin.tables.sink import sink
+    from robokin.workspace.analyse import analyse_workspace
+    from robokin.workspace.space import space_of
 
     with Stages():
-        answer = list(report(robots, units, kind, (section, slice_ or []), plot, arguments))
-    for data in answer:
-        _print(data)
+        # What is asked for must exist before the work begins.
+        views = [_views(space_of(robot), units, *asked) for robot in robots]
+        samples, seed, cores = arguments["samples"], arguments["seed"], arguments["cores"]
+        found, cuts, plates = [], [], []
+        for robot, own in zip(robots, views, strict=True):
+            about(robot.name if len(robots) > 1 else "")
+            found.append(analyse_workspace(robot, **arguments))
+            cuts.append([cut_of(view, samples, seed, cores) for view in own])
+        about("")
+        if plot is not None or (kind == "table" and len(robots) == 1):
+            stage("picture")
+        if plot is not None:
+            drawn = workspace_picture(found, views, cuts, units, Path(plot).suffix.lower(), cores)
+            with sink(plot, "--plot") as stream:
+                stream.write(drawn)
+        elif kind == "table" and len(robots) == 1:
+            plates = plates_of(found[0], views[0], units, cores)
+        answer = list(workspaces_written(found, cuts, units, kind, plates))
+    with sink(None) as stream:
+        stream.writelines(answer)
     return DONE
 
 
 def _one_question(questions: dict[str, Any], more: dict[str, Any]) -> None:
     """Raise InputError where two things are asked for that have different answers."""
-    from robokin.errors import InputError
-
     asked = [name for name, value in questions.items() if value]
     if len(asked) > 1:
         raise InputError(f"{asked[0]} and {asked[1]} exclude each other, expected one of them")
@@ -188,11 +192,11 @@ def _places(robot: Robot, units: Units, kind: str, at: list[str], arguments: dic
     """Which places can be reached, and how."""
     import numpy as np
 
-    from robokin.cli.output.text import csv_records, json_document, json_line, json_list
     from robokin.cli.progress import Stages
     from robokin.cli.targets import parse_place
-    from robokin.cli.workspaces import place_record
     from robokin.jobs.stages import stage
+    from robokin.reports.workspace_report import places_written
+    from robokin.tables.sink import sink
     from robokin.workspace.place import at_point
     from robokin.workspace.space import space_of
 
@@ -203,45 +207,19 @@ def _places(robot: Robot, units: Units, kind: str, at: list[str], arguments: dic
         for number, point in enumerate(points, start=1):
             stage(f"place {number} of {len(points)}")
             places.append(at_point(space, np.asarray(point), seed=arguments["seed"]))
-    if kind == "table":
-        from robokin.cli.workspace_tables import places_table
-
-        _print(places_table(places, robot.name, units))
-    else:
-        records = [place_record(place, robot.id, units) for place in places]
-        if kind == "csv":
-            names = ["reachable", "solutions", "group", "orientations", "reached", "fraction"]
-            rows = [
-                [*record["position"], str(record["reachable"]).lower(),
-                 *("" if record[name] is None else record[name] for name in names[1:])]
-                for record in records
-            ]  # fmt: skip
-            _print(csv_records(["x", "y", "z", *names], rows))
-        elif kind == "json" and len(records) == 1:
-            _print(json_document(records[0]))
-        else:
-            data = json_list([record] for record in records) if kind == "json" else map(json_line, records)
-            for part in data:
-                _print(part)
+    with sink(None) as stream:
+        stream.writelines(places_written(places, robot, units, kind))
     return DONE if all(place.reachable for place in places) else NO
 
 
 def _write(
-    robot: Robot,
-    units: Units,
-    output: str,
-    with_: str | None,
-    as_: str | None,
-    resume: bool,
-    arguments: dict[str, Any],
+    robot: Robot, units: Units, output: str, with_: str | None, as_: str | None, resume: bool, arguments: dict[str, Any]
 ) -> int:
     """Write samples to a file."""
     from robokin.cli.options import orientation_kind
     from robokin.cli.progress import Progress
-    from robokin.cli.sample_files import write_samples
-    from robokin.cli.sample_rows import Samples, sample_format
-    from robokin.cli.statuses import say
-    from robokin.errors import InputError
+    from robokin.reports.sample_files import write_samples
+    from robokin.reports.sample_rows import Samples, sample_format
     from robokin.workspace.space import space_of
 
     held = [part.strip() for part in with_.split(",")] if with_ is not None else []
@@ -255,28 +233,30 @@ def _write(
         arguments["samples"], "joints" in held, turned if "poses" in held else None,
     )  # fmt: skip
     with Progress("samples") as progress:
-        before = write_samples(output, samples, arguments["cores"], resume, progress.told)
+        before = write_samples(output, samples, arguments["cores"], resume, progress.told, say)
     if before:
         say(f"{before:,} of {samples.count:,} samples were there before")
     return DONE
 
 
-def _print(data: bytes) -> None:
-    """Bytes to standard output."""
-    from robokin.cli.output.sink import sink
+def _views(space: Space, units: Units, section: bool, slices: Sequence[str]) -> list[View]:
+    """The planes that --section and --slice ask for. Raises InputError where a robot has none such."""
+    from robokin.cli.arguments import parse_numbers
+    from robokin.pictures.views import section_view, slice_view
 
-    with sink(None) as stream:
-        stream.write(data)
-
-
-def _whole(text: str | None, option: str, least: int, most: int) -> int | None:
-    """A whole number within bounds. Raises InputError."""
-    from robokin.errors import InputError, shown
-
-    if text is None:
-        return None
-    digits = text.strip().replace("_", "")
-    if not (digits.isascii() and digits.isdecimal() and len(digits) < 25) or not least <= int(digits) <= most:
-        limit = f"of {least} or more" if most >= 2**62 else f"from {least} to {most}"
-        raise InputError(f"{option}: found '{shown(text)}', expected a whole number {limit}")
-    return int(digits)
+    views: list[View] = []
+    if (section or slices) and space.dimension != 3:
+        option = "--section" if section else "--slice"
+        raise InputError(f"{option}: {space.robot.name} reaches no solid, expected an arm that does")
+    if section:
+        view = section_view(space)
+        if view is None:
+            raise InputError(f"--section: the first joint of {space.robot.name} does not turn it, expected --slice")
+        views.append(view)
+    for text in slices:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if name not in ("x", "y", "z") or not equals:
+            raise InputError(f"--slice: found '{text}', expected x=, y= or z= and a length")
+        at = float(parse_numbers(value, "--slice", [False], units, "a length")[0])
+        views.append(slice_view(space, name, at * units.metres, f"{at:g} {units.length}"))
+    return views

@@ -22,9 +22,9 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.kernel.chain import Chain, chain_size, exact, z_to
+from robokin.kernel.chain import Chain, chain_size
 from robokin.kernel.columns import ChainPlan, Constant
-from robokin.spatial import invert, translation_transform
+from robokin.spatial import exact, invert, translation_transform, z_to
 
 REGULAR = 1e-3
 """Least singular value (lengths in the arm's size) at which a choice of virtual joints counts as regular."""
@@ -127,7 +127,7 @@ def _frames(chain: Chain, q: Array) -> list[Array]:
 
 def _appended(chain: Chain, G: Array, order: tuple[int, ...]) -> Chain:
     """The chain with virtual joints at the frame G in the tool: 0-2 slide along, 3-5 turn about x, y, z."""
-    frames = [G @ z_to(tuple(float(part) for part in np.eye(3)[axis % 3])) for axis in order]
+    frames = [G @ z_to(np.eye(3)[axis % 3]) for axis in order]
     constants = [*chain.constants[:-1], chain.constants[-1] @ frames[0]]
     for before, after in pairwise(frames):
         constants.append(invert(before) @ after)

@@ -1,0 +1,137 @@
+"""Options that commands share, declared once as groups.
+
+A parameter of a command whose type is a group stands for all options of the group, in their order: `expanded` puts them
+into the command's signature, for the parser and the help, and hands the command the group with what was typed.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, get_type_hints
+
+from robokin.cli.options import (
+    AngleOption,
+    ArrayOutputOption,
+    FormatOption,
+    JsonOption,
+    LengthOption,
+    OutputOption,
+    SetOption,
+    effective_units,
+    output_format,
+    parameter_overrides,
+)
+from robokin.errors import InputError
+
+if TYPE_CHECKING:
+    from robokin.model import Mechanism, Robot, WheeledBase
+    from robokin.units import Units
+
+
+class OptionGroup:
+    """Options with what was typed for each; a subclass declares them with their defaults."""
+
+    def __init__(self, **typed: Any) -> None:
+        self.__dict__.update(typed)
+
+
+class OutputOptions(OptionGroup):
+    """Where the answer goes, and in which format."""
+
+    file: OutputOption = None
+    format: FormatOption = None
+    json: JsonOption = False
+
+    arrays = False
+    """Whether the answer can be an array."""
+
+    @property
+    def chosen(self) -> str | None:
+        """The format that --format and --json ask for; None when neither does. Raises InputError."""
+        return output_format(self.format, self.json)
+
+    @property
+    def kind(self) -> str:
+        """The format: that of the output's ending, else the chosen one, else a table. Raises InputError."""
+        from robokin.tables.sink import format_of
+
+        return format_of(self.file, self.chosen, arrays=self.arrays)
+
+
+class ArrayOutputOptions(OutputOptions):
+    """Where an answer goes that can be an array."""
+
+    file: ArrayOutputOption = None
+
+    arrays = True
+
+
+class UnitOptions(OptionGroup):
+    """The units of what goes in and out."""
+
+    angle: AngleOption = None
+    length: LengthOption = None
+
+    def over(self, own: Units) -> Units:
+        """Units, with those that were asked for in their place. Raises InputError."""
+        return effective_units(own, self.length, self.angle)
+
+
+class DescriptionOptions(UnitOptions):
+    """How a description is read, and the units of what goes in and out."""
+
+    set_: SetOption = None
+
+    def entry(self, name: str, mode: int | None = None) -> Robot | Mechanism | WheeledBase:
+        """What a name or a path describes; `mode` is the way to put a mechanism together. Raises InputError."""
+        from robokin.cli.arguments import load_entry
+
+        return load_entry(name, parameter_overrides(self.set_), mode)
+
+    def robot(self, name: str) -> tuple[Robot, Units]:
+        """The robot that a name or a path describes, and the units to use. Raises InputError, also for no robot."""
+        from robokin.cli.arguments import load_robot
+
+        robot = load_robot(name, parameter_overrides(self.set_))
+        return robot, self.over(robot.units)
+
+    def moving_robot(self, name: str) -> tuple[Robot, Units]:
+        """The same of a robot that has joints. Raises InputError."""
+        robot, units = self.robot(name)
+        if not robot.n:
+            raise InputError(f"{robot.name} has no joints, expected a robot that can move")
+        return robot, units
+
+
+def expanded(function: Callable[..., int]) -> Callable[..., int]:
+    """A command with the options of its groups in place of the groups."""
+    hints = get_type_hints(function, include_extras=True)
+    groups: dict[str, tuple[type[OptionGroup], list[str]]] = {}
+    parameters: list[inspect.Parameter] = []
+    for name, parameter in inspect.signature(function).parameters.items():
+        options, group = {name: hints[name]}, hints[name]
+        if isinstance(group, type) and issubclass(group, OptionGroup):
+            options = get_type_hints(group, include_extras=True)
+            groups[name] = group, [*options]
+        parameters += [
+            parameter.replace(
+                name=option,
+                kind=inspect.Parameter.KEYWORD_ONLY,
+                annotation=hint,
+                default=getattr(group, option) if name in groups else parameter.default,
+            )
+            for option, hint in options.items()
+        ]
+    if not groups:
+        return function
+
+    def command(**typed: Any) -> int:
+        for name, (group, options) in groups.items():
+            typed[name] = group(**{option: typed.pop(option) for option in options})
+        return function(**typed)
+
+    command.__doc__ = function.__doc__
+    command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    return command

@@ -1,0 +1,1 @@
+"""What students hand in, read: files of a class, tables, and the texts of options."""

@@ -1,0 +1,217 @@
+"""What a description describes, as `robokin show`, `list` and `validate` say it: plain data."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robokin.errors import DescriptionError, InputError, Note
+from robokin.formats.library import load_any
+from robokin.kinematics.structure import structure_of
+from robokin.mobility.count import grubler
+from robokin.model import Joint, Mechanism, Robot, WheeledBase
+from robokin.model.joint_units import in_units, joint_factors
+from robokin.records.envelope import SCHEMA, envelope
+from robokin.records.pose_records import poses_in
+from robokin.units import Units
+
+KINDS = {Robot: "robot", Mechanism: "mechanism", WheeledBase: "wheeled"}
+"""What the key `kind` says of that which a description describes."""
+
+ZERO_DECIMALS = 9
+"""Decimals of the place at zero: 1e-9 m and less is far below what a table states, and far above rounding."""
+
+
+def kind_of(entry: Robot | Mechanism | WheeledBase) -> str:
+    """`robot`, `mechanism` or `wheeled`."""
+    return KINDS[type(entry)]
+
+
+def zero_record(robot: Robot, units: Units) -> dict[str, Any]:
+    """Where the tool frame stands with every joint at zero: its origin, its z, and the base's axis that z is along.
+
+    `z_along` is None where z slants.
+    """
+    from robokin.kinematics.forward import forward_kinematics
+
+    T = poses_in(forward_kinematics(robot, np.zeros(robot.n)), units)
+    # Adding 0 makes 0 of -0.
+    position, z = ((np.round(T[:3, column], ZERO_DECIMALS) + 0.0).tolist() for column in (3, 2))
+    along = [f"{'+-'[value < 0]}{axis}" for axis, value in zip("xyz", z, strict=True) if abs(value) == 1]
+    return {"position": position, "z": z, "z_along": along[0] if along else None}
+
+
+Verdict = Robot | Mechanism | WheeledBase | InputError
+"""What a description describes, or what is wrong with it."""
+
+
+def described_record(entry: Robot | Mechanism | WheeledBase, units: Units) -> dict[str, Any]:
+    """The document of `robokin show` about whatever a description describes."""
+    if isinstance(entry, Robot):
+        return robot_record(entry, units)
+    if isinstance(entry, Mechanism):
+        return mechanism_record(entry, units)
+
+    return wheel_record(entry, units)
+
+
+def verdict_of(file: str) -> Verdict:
+    """What a file, or a name of the library, describes, or what is wrong with it."""
+    try:
+        return load_any(file)
+    except InputError as error:
+        return error
+
+
+def file_record(file: str, verdict: Verdict) -> dict[str, Any]:
+    """The document of `robokin validate` about a file, or a name of the library: whether it is a description."""
+    record: dict[str, Any] = {"schema": SCHEMA, "file": file, "id": Path(file).stem}
+    nothing: dict[str, Any] = {"valid": False, "kind": None, "name": None, "error": None, "line": None, "column": None}
+    record |= nothing | {"errors": [], "notes": [], "units": None}
+    if not isinstance(verdict, Exception):
+        found = {"valid": True, "kind": kind_of(verdict), "name": verdict.name, "units": verdict.units.as_record()}
+        return record | found | {"id": verdict.id, "notes": [_place(note) for note in verdict.notes]}
+    record["error"] = getattr(verdict, "sentence", str(verdict))
+    record["line"] = getattr(verdict, "line", 0) or None
+    record["column"] = getattr(verdict, "column", 0) or None
+    record["errors"] = [_place(error) for error in getattr(verdict, "errors", ())] or [
+        {"line": None, "column": None, "message": str(verdict)}
+    ]
+    return record
+
+
+def _place(said: Note | DescriptionError) -> dict[str, Any]:
+    return {"line": said.line, "column": said.column, "message": said.message}
+
+
+def robot_record(robot: Robot, units: Units) -> dict[str, Any]:
+    """All that is known of a robot, in the given units."""
+    structure = structure_of(robot)
+    rows = []
+    variables = iter(range(1, robot.n + 1))
+    for i, row in enumerate(robot.rows, start=1):
+        rows.append(_row_record(i, row, f"q{next(variables)}" if row.moves else None, robot.convention, units))
+    factors = joint_factors(robot, units)
+    return {
+        **envelope("robot", robot.id, units),
+        "name": robot.name,
+        "kind": "robot",
+        "description": robot.description,
+        "source": robot.source,
+        "convention": robot.convention,
+        "joints": robot.types,
+        "class": structure.arm,
+        "wrist": structure.wrist or None,
+        "n": robot.n,
+        "m": structure.dimension,
+        "redundancy": structure.redundancy,
+        "grubler": grubler(6, robot.n + 1, [1] * robot.n),
+        "inverse": _inverse_record(robot),
+        "parameters": dict(robot.parameters),
+        "base": poses_in(robot.base.copy(), units).tolist(),
+        "tool": poses_in(robot.tool.copy(), units).tolist(),
+        "at_zero": zero_record(robot, units),
+        "rows": rows,
+        "poses": {name: in_units(q, factors).tolist() for name, q in robot.poses.items()},
+    }
+
+
+def _row_record(i: int, row: Joint, variable: str | None, convention: str, units: Units) -> dict[str, Any]:
+    def in_angle(value: float) -> float:
+        return float(in_units(np.array(value), units.radians))
+
+    def in_length(value: float) -> float:
+        return float(in_units(np.array(value), units.metres))
+
+    turns = row.type == "revolute"
+    own = in_angle if turns else in_length
+    record: dict[str, Any] = {"i": i, "name": row.name, "type": str(row.type), "variable": variable}
+    if convention == "frames":
+        origin = np.eye(4) if row.origin is None else row.origin
+        record["origin"] = poses_in(origin.copy(), units).tolist()
+        record["axis"] = None if row.axis is None or variable is None else row.axis.tolist()
+    else:
+        record["theta"] = None if turns else in_angle(row.theta)
+        record["d"] = None if row.type == "prismatic" else in_length(row.d)
+        record["a"] = in_length(row.a)
+        record["alpha"] = in_angle(row.alpha)
+    record["offset"] = own(row.offset) if variable else None
+    record["sense"] = row.sense if variable else None
+    low, high = row.limits
+    record["limits"] = None if np.isinf(low) else [own(low), own(high)]
+    return record
+
+
+def _inverse_record(robot: Robot) -> dict[str, Any] | None:
+    """How the inverse kinematics is solved, why so, and whether every solution is found."""
+    from robokin.inverse.analysis import analysis_of  # a list of the library needs no solver
+
+    if not robot.n:
+        return None
+    analysis = analysis_of(robot)
+    return {"method": analysis.method, "reason": analysis.sentence, "complete": analysis.complete}
+
+
+def mechanism_record(mechanism: Mechanism, units: Units) -> dict[str, Any]:
+    """A mechanism's links and joints and Grübler's count, in the given units."""
+    freedoms = [joint.freedoms for joint in mechanism.joints for _ in range(joint.multiplicity)]
+    return {
+        **envelope("mechanism", mechanism.id, units),
+        "name": mechanism.name,
+        "kind": "mechanism",
+        "description": mechanism.description,
+        "source": mechanism.source,
+        "space": mechanism.space,
+        "links": list(mechanism.links),
+        "ground": mechanism.ground,
+        "output": mechanism.output or None,
+        "grubler": grubler(mechanism.order, len(mechanism.links), freedoms),
+        "parameters": dict(mechanism.parameters),
+        "joints": [
+            {
+                "name": joint.name,
+                "type": joint.type,
+                "links": list(joint.links),
+                "freedoms": joint.freedoms,
+                "at": None if joint.at is None else (joint.at / units.metres).tolist(),
+                "axes": None if joint.axes is None else joint.axes.tolist(),
+                "actuated": joint.actuated,
+                "turns": [joint.gearing[0] / number for number in joint.gearing] or None,
+                "carrier": joint.carrier or None,
+            }
+            for joint in mechanism.joints
+        ],
+    }
+
+
+def wheel_record(base: WheeledBase, units: Units) -> dict[str, Any]:
+    """A base's wheels, in the given units."""
+
+    def said(value: float, factor: float) -> float:
+        return float(in_units(np.array(value), factor))
+
+    return {
+        **envelope("base", base.id, units),
+        "name": base.name,
+        "kind": "wheeled",
+        "description": base.description,
+        "source": base.source,
+        "steering": "parallel" if base.parallel else "independent",
+        "parameters": dict(base.parameters),
+        "wheels": [
+            {
+                "name": wheel.name,
+                "type": wheel.type,
+                "at": [said(wheel.x, units.metres), said(wheel.y, units.metres)],
+                "angle": said(wheel.angle, units.radians),
+                "radius": said(wheel.radius, units.metres) or None,
+                "offset": said(wheel.offset, units.metres) if wheel.type == "castor" else None,
+                "roller": said(wheel.roller, units.radians) if wheel.type == "swedish" else None,
+                "driven": wheel.driven,
+                "turned": wheel.turned,
+            }
+            for wheel in base.wheels
+        ],
+    }

@@ -1,0 +1,98 @@
+"""Paths as plain data: the document of `robokin path`, and its rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robokin.arrays import Array
+from robokin.inverse.joint_paths import Event, Path, line_task
+from robokin.kinematics.velocity import differential_kinematics
+from robokin.model import Robot
+from robokin.model.joint_units import in_units, joint_factors
+from robokin.records.envelope import envelope
+from robokin.records.jacobian_records import JacobianRecords
+from robokin.records.pose_records import poses_in
+from robokin.tables.orientations import pose_columns, pose_table
+from robokin.units import Units
+
+
+@dataclass(frozen=True, eq=False)
+class PathRecords:
+    """Makes a document of a path."""
+
+    path: Path
+    units: Units
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that follows the path."""
+        return self.path.robot
+
+    def columns(self) -> list[str]:
+        """The columns' names."""
+        return ["t", *(f"q{i}" for i in range(1, self.robot.n + 1)), *pose_columns("rpy")]
+
+    def joints(self) -> Array:
+        """The joint values (m, n) in the units."""
+        factors = joint_factors(self.robot, self.units)
+        q = np.asarray(self.path.q / factors + 0.0)
+        # The ends are what was typed, without the dust of a change of units.
+        for i in (0, -1):
+            q[i] = in_units(self.path.q[i], factors)
+        return q
+
+    def rows(self) -> Array:
+        """(m, 7 + n) the columns in the units."""
+        poses = pose_table(poses_in(self.path.T.copy(), self.units), "rpy", self.units)
+        return np.concatenate([self.path.t[:, None], self.joints(), poses], axis=1)
+
+    def records(self) -> Iterator[dict[str, Any]]:
+        """A record for each row."""
+        n = self.robot.n
+        for row in self.rows().tolist():
+            yield {"t": row[0], "q": row[1 : n + 1], "position": row[n + 1 : n + 4], "rpy": row[n + 4 :]}
+
+    def document(self) -> dict[str, Any]:
+        """The whole path with its summary."""
+        path, events = self.path, self.path.events
+        return {
+            **envelope("robot", self.robot.id, self.units),
+            "kind": self.path.kind,
+            "steps": path.steps,
+            "complete": path.complete,
+            "fraction": path.fraction,
+            "length": path.length / self.units.metres,
+            "greatest_moves": self.moves().tolist(),
+            "least_manipulability": self.least(),
+            "events": [self.event(event) for event in events],
+            "path": list(self.records()),
+        }
+
+    def event(self, event: Event) -> dict[str, Any]:
+        """The JSON of an event, its value in the joint's unit."""
+        value = None
+        if event.joint is not None and event.value is not None:
+            value = event.value / float(joint_factors(self.robot, self.units)[event.joint - 1])
+        return {
+            "kind": event.kind,
+            "fraction": event.fraction,
+            "joint": event.joint,
+            "value": value,
+            "words": event.words,
+        }
+
+    def moves(self) -> Array:
+        """(n,) how far each joint's least and greatest values are apart."""
+        q = self.path.q
+        return in_units(np.max(q, axis=0) - np.min(q, axis=0), joint_factors(self.robot, self.units))
+
+    def least(self) -> float:
+        """The least manipulability on the way, of the Jacobian in the length unit and radians."""
+        task: Any = "position" if self.path.kind == "line" and line_task(self.robot) == "position" else None
+        i = int(np.argmin(self.path.manipulability))
+        found = differential_kinematics(self.robot, self.path.q[i : i + 1], task=task)
+        return float(JacobianRecords(self.robot, self.units, "base", task).volumes(found)[0])

@@ -1,0 +1,73 @@
+"""Poses at many configurations, a block at a time, in the units of whoever asks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from robokin.arrays import Array
+from robokin.errors import InputError
+from robokin.kinematics.forward import forward_kinematics, row_frames
+from robokin.model import Robot
+from robokin.model.joint_units import joint_factors
+from robokin.number_text import show_range
+from robokin.records.pose_records import PoseBlock, poses_in
+from robokin.units import Units
+
+
+class PoseMaker:
+    """Turns blocks of configurations into blocks of poses, and counts what is outside the limits."""
+
+    def __init__(self, robot: Robot, units: Units, frames: bool) -> None:
+        """`frames` asks for the frame after every row of the table, too."""
+        self.robot, self.units, self.frames = robot, units, frames
+        self.factors = joint_factors(robot, units)
+        self.count = 0
+        self.outside = 0
+        self.first_outside = 0
+
+    def of(self, blocks: Iterable[Array]) -> Iterator[PoseBlock]:
+        """The poses at blocks of configurations (m, n) in the units. Raises InputError where there is none."""
+        for q in blocks:
+            si = q * self.factors
+            within = self.robot.within_limits(si)
+            # What is too large is found below, and said in a sentence.
+            with np.errstate(over="ignore", invalid="ignore"):
+                T = poses_in(forward_kinematics(self.robot, si), self.units)
+                frames = poses_in(row_frames(self.robot, si), self.units) if self.frames else None
+            for result in (T, frames):
+                # Rotations are finite for finite angles; only positions can grow too large.
+                if result is not None and not np.isfinite(result[..., :3, 3]).all():
+                    finite = np.isfinite(result).reshape(len(q), -1).all(axis=1)
+                    number = self.count + int(finite.argmin()) + 1
+                    raise InputError(f"configuration {number}: the pose is too far away for a number, expected less")
+            yield PoseBlock(self.count + 1, q + 0.0, within, T, frames)
+            if not within.all():
+                if not self.outside:
+                    self.first_outside = self.count + int(within.argmin()) + 1
+                self.outside += len(q) - int(within.sum())
+            self.count += len(q)
+
+    def outside_notes(self, q: Array) -> Iterator[str]:
+        """A sentence for each joint value of a few configurations (m, n) that is outside its limits."""
+        for number, values in enumerate(q, start=1):
+            which = f"configuration {number}: " if len(q) > 1 else ""
+            for i, joint in enumerate(self.robot.joints):
+                alone = np.clip(np.zeros(self.robot.n), *self.robot.limits.T)
+                alone[i] = values[i] * self.factors[i]
+                if not self.robot.within_limits(alone):
+                    unit = self.units.angle if joint.type == "revolute" else self.units.length
+                    name = "" if joint.name == str(i + 1) else f" ({joint.name})"
+                    limits = show_range(*(limit / self.factors[i] for limit in joint.limits))
+                    yield f"{which}joint {i + 1}{name} = {values[i]:.12g} {unit} is outside its limits {limits}"
+
+    def outside_summary(self) -> str | None:
+        """A sentence on the configurations of a stream that were outside the limits; None if none was."""
+        if not self.outside:
+            return None
+        verb = "is" if self.outside == 1 else "are"
+        return (
+            f"{self.outside} of {self.count} configurations {verb} outside the joint limits, "
+            f"the first is number {self.first_outside}"
+        )

@@ -1,0 +1,158 @@
+"""What `robokin show` prints: a robot's table as a lecture has it, a mechanism's joints, a base's wheels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from robokin.number_text import show, show_range
+from robokin.reports.page_tables import heading, pairs, render, table
+from robokin.spatial import rpy_from_rotation
+from robokin.units import RADIANS
+
+MOST_POSES = 40
+"""Named poses that a table shows: a description may have thousands."""
+
+
+def description_table(record: dict[str, Any]) -> bytes:
+    """The page about what a description describes, from its document."""
+    return {"robot": robot_table, "mechanism": mechanism_table, "wheeled": wheel_table}[record["kind"]](record)
+
+
+def robot_table(record: dict[str, Any]) -> bytes:
+    """A robot's table as a lecture prints it, and what else is known of it."""
+    drawn = table()
+    frames = record["convention"] == "frames"
+    modified = record["convention"] == "modified"
+    headings = ["origin", "axis"] if frames else ["theta", "d", "a", "alpha"]
+    if modified:
+        headings = ["alpha i-1", "a i-1", "theta", "d"]
+    named = any(row["name"] != str(row["i"]) for row in record["rows"])
+    for name in ["i", *(["joint"] if named else []), "type", *headings, "limits"]:
+        drawn.add_column(name, justify="right" if name not in ("joint", "type", "origin", "axis") else "left",
+                         no_wrap=name not in ("joint", "origin"))  # fmt: skip
+    angle = record["units"]["angle"]
+    for row in record["rows"]:
+        cells = [_variable(row, name, angle) for name in ("origin", "axis")] if frames else []
+        if not frames:
+            order = ("alpha", "a", "theta", "d") if modified else ("theta", "d", "a", "alpha")
+            cells = [_variable(row, name, angle) for name in order]
+        limits = "" if row["limits"] is None else show_range(*row["limits"])
+        drawn.add_row(str(row["i"]), *([row["name"]] if named else []), row["type"], *cells, limits)
+    units = record["units"]
+    entries = [("class", record["class"])]
+    if record["wrist"]:
+        entries.append(("wrist", record["wrist"]))
+    entries += [
+        ("joints N", str(record["n"])),
+        ("task M", f"{record['m']}  (dimension of the poses that it can reach)"),
+        ("R = N - M", f"{record['redundancy']}"),
+        ("Grübler", f"F = 6({record['n'] + 1} - {record['n']} - 1) + {record['n']} = {record['grubler']}"),
+    ]
+    if record["inverse"]:
+        inverse = record["inverse"]
+        whole = "every solution" if inverse["complete"] else "some of infinitely many solutions"
+        entries.append(("inverse", f"{inverse['method']}: {inverse['reason']}; {whole}"))
+    if record["parameters"]:
+        listed = ", ".join(f"{name} = {show(value)}" for name, value in record["parameters"].items())
+        entries.append(("parameters", listed))
+    poses = list(record["poses"].items())
+    entries += [(f"pose {name}", "  ".join(show(value) for value in pose)) for name, pose in poses[:MOST_POSES]]
+    if len(poses) > MOST_POSES:
+        entries.append(("", f"and {len(poses) - MOST_POSES} more poses, which --json has"))
+    for name in ("base", "tool"):
+        text = _transform_text(record[name], angle)
+        if text:
+            entries.append((name, text))
+    entries.append(("at zero", _zero_text(record["at_zero"], units["length"])))
+    entries += [("about", record["description"])] if record["description"] else []
+    entries += [("source", record["source"])] if record["source"] else []
+    rest = f"{record['convention']} convention, lengths in {units['length']}, angles in {units['angle']}"
+    return render(heading(record["name"], rest), "", drawn, "", pairs(entries))
+
+
+def _zero_text(zero: dict[str, Any], unit: str) -> str:
+    """`tool frame at (980, 0, 435) mm, z along +x`; a slanting z as a vector."""
+
+    def vector(values: list[float]) -> str:
+        return f"({', '.join(show(value) for value in values)})"
+
+    return f"tool frame at {vector(zero['position'])} {unit}, z along {zero['z_along'] or vector(zero['z'])}"
+
+
+def _variable(row: dict[str, Any], name: str, angle: str) -> str:
+    """A cell as a lecture prints it: the variable with its offset, or the constant."""
+    value = row[name]
+    if name == "origin":
+        return _transform_text(value, angle) or "identity"
+    if name == "axis":
+        axis = "" if value is None else " ".join(show(part) for part in value)
+        return f"{axis}  for -{row['variable']}" if row["sense"] == -1 else axis
+    if value is not None:
+        return show(value)
+    offset = row["offset"]
+    if row["sense"] == -1:
+        return f"{show(offset)} - {row['variable']}" if offset else f"-{row['variable']}"
+    if not offset:
+        return str(row["variable"])
+    return f"{row['variable']} {'+' if offset > 0 else '-'} {show(abs(offset))}"
+
+
+def _transform_text(matrix: list[list[float]], angle: str) -> str:
+    """A constant transform in short, its angles in the unit; "" for the identity."""
+    T = np.array(matrix)
+    parts = []
+    if np.any(np.abs(T[:3, 3]) > 0):
+        parts.append(f"Trans({', '.join(show(value) for value in T[:3, 3])})")
+    if np.max(np.abs(T[:3, :3] - np.eye(3))) > 1e-12:
+        angles = rpy_from_rotation(T[:3, :3]) / RADIANS[angle]
+        parts.append(f"RPY({', '.join(show(value) for value in angles)})")
+    return " ".join(parts)
+
+
+def mechanism_table(record: dict[str, Any]) -> bytes:
+    """A mechanism's joints below one another."""
+    drawn = table()
+    for name in ("joint", "type", "links", "f", "at", "axis"):
+        drawn.add_column(name, justify="right" if name == "f" else "left")
+    for joint in record["joints"]:
+        at = "" if joint["at"] is None else " ".join(show(value) for value in joint["at"])
+        axes = "; ".join(" ".join(show(part) for part in axis) for axis in joint["axes"] or [])
+        if joint["turns"]:
+            axes += ("; " if axes else "") + "turns " + " : ".join(show(turns) for turns in joint["turns"])
+        drawn.add_row(joint["name"], joint["type"], " ".join(joint["links"]), str(joint["freedoms"]), at, axes)
+    entries = [
+        ("space", record["space"]),
+        ("links", f"{len(record['links'])}: {', '.join(record['links'])} (ground: {record['ground']})"),
+        ("Grübler", f"F = {record['grubler']}"),
+    ]
+    entries += [("about", record["description"])] if record["description"] else []
+    entries += [("source", record["source"])] if record["source"] else []
+    return render(heading(record["name"], f"lengths in {record['units']['length']}"), "", drawn, "", pairs(entries))
+
+
+def wheel_table(record: dict[str, Any]) -> bytes:
+    """The wheels below one another, and what else the description says."""
+    drawn = table()
+    numbers = ("x", "y", "angle", "radius", *(key for key in ("offset", "roller") if _some(record, key)))
+    for name in ("wheel", "type", *numbers, "motor"):
+        drawn.add_column(name, justify="right" if name in numbers else "left")
+    for wheel in record["wheels"]:
+        values = dict(zip("xy", wheel["at"], strict=True)) | wheel
+        cells = ["" if values[name] is None else show(values[name]) for name in numbers]
+        motors = [word for word in ("driven", "turned") if wheel[word]]
+        drawn.add_row(wheel["name"], wheel["type"], *cells, ", ".join(motors))
+    units = record["units"]
+    entries = [("steering", "the steered wheels stay parallel")] if record["steering"] == "parallel" else []
+    if record["parameters"]:
+        listed = ", ".join(f"{name} = {show(value)}" for name, value in record["parameters"].items())
+        entries.append(("parameters", listed))
+    entries += [("about", record["description"])] if record["description"] else []
+    entries += [("source", record["source"])] if record["source"] else []
+    rest = f"a wheeled base, lengths in {units['length']}, angles in {units['angle']}"
+    return render(heading(record["name"], rest), "", drawn, "", pairs(entries))
+
+
+def _some(record: dict[str, Any], key: str) -> bool:
+    return any(wheel[key] is not None for wheel in record["wheels"])

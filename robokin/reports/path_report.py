@@ -1,0 +1,92 @@
+"""Answers of `robokin path`: rows for programs, a summary for eyes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import IO
+
+import numpy as np
+
+from robokin.arrays import Array
+from robokin.errors import counted
+from robokin.number_text import show
+from robokin.records.envelope import envelope
+from robokin.records.path_records import PathRecords
+from robokin.tables.written_rows import csv_header, csv_rows, json_document, json_line
+
+SAME = 1e-6
+"""Joint values [rad | m] that differ by less are one."""
+
+SHOWN = 11
+"""Rows of the table: the whole path is for CSV, JSON lines and arrays."""
+
+WIDEST = 7
+"""Joints whose values fit the width of a page."""
+
+
+@dataclass(frozen=True, eq=False)
+class PathReport:
+    """A path in every format; `wanted` are joint values (n,) [rad | m] that a line was asked to end with, if it was."""
+
+    records: PathRecords
+    wanted: Array | None = None
+
+    def write(self, kind: str, stream: IO[bytes]) -> Iterator[bytes]:
+        """The path in a format; arrays go to the stream themselves."""
+        if kind == "npy":
+            np.lib.format.write_array(stream, self.records.rows(), version=(1, 0))
+        elif kind == "csv":
+            yield csv_header(self.records.columns()) + csv_rows(self.records.rows())
+        elif kind == "jsonl":
+            head = envelope("robot", self.records.robot.id, self.records.units)
+            yield b"".join(json_line({**head, **record}) for record in self.records.records())
+        elif kind == "json":
+            yield json_document(self.records.document())
+        else:
+            yield from self.page()
+
+    def notes(self) -> Iterator[str]:
+        """Sentences on what happens on the way, and on where the path ends."""
+        robot, path, units = self.records.robot, self.records.path, self.records.units
+        for event in path.events:
+            record = self.records.event(event)
+            value = ""
+            if record["value"] is not None:
+                assert event.joint is not None
+                turns = robot.revolute[event.joint - 1]
+                value = f" at {show(record['value'])} {units.angle if turns else units.length}"
+            yield f"at {show(event.fraction)} of the path: {event.words}{value}"
+        if not path.complete:
+            rows = counted(len(path.t), "row")
+            yield f"it can be followed up to {show(path.fraction)} of the path: {rows} of {path.steps + 1}"
+        elif self.wanted is not None:
+            gap = path.q[-1] - self.wanted
+            if np.max(np.abs(gap)) > SAME:
+                end = "  ".join(show(value) for value in self.records.joints()[-1])
+                yield f"the line ends at that pose with another configuration: {end}"
+
+    def page(self) -> Iterator[bytes]:
+        """A summary, and some rows."""
+        from robokin.reports.number_columns import NumberColumns
+        from robokin.reports.page_tables import heading, pairs, render
+
+        robot, path, units = self.records.robot, self.records.path, self.records.units
+        what = "a straight line" if path.kind == "line" else "joint by joint"
+        entries = [
+            ("steps", f"{path.steps}"),
+            ("length", f"{show(path.length / units.metres)} {units.length}"),
+            ("joint moves", "  ".join(show(value) for value in self.records.moves())),
+            ("least manipulability", f"{self.records.least():.9g}"),
+        ]
+        entries += [("note", sentence) for sentence in self.notes()]
+        rest = f"{what}, lengths in {units.length}, angles in {units.angle}"
+        yield render(heading(robot.name, rest), "", pairs(entries))
+        if robot.n <= WIDEST:
+            q = self.records.joints()
+            picked = np.unique(np.linspace(0, len(q) - 1, min(SHOWN, len(q))).round().astype(int))
+            names = [f"q{i}" for i in range(1, robot.n + 1)]
+            kinds = "".join("a" if turns else "l" for turns in robot.revolute)
+            columns = NumberColumns([("t", 6)], names, kinds, units)
+            lines = columns.lines(((f"{path.t[i]:.4f}",) for i in picked.tolist()), q[picked])
+            yield f"\n{columns.heading}{lines}".encode()

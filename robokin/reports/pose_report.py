@@ -1,0 +1,133 @@
+"""Answers of `robokin fk`, a block at a time: from poses to every format."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import IO, Any
+
+import numpy as np
+
+from robokin.arrays import Array
+from robokin.model import Robot
+from robokin.number_text import show
+from robokin.records.pose_records import PoseBlock, configuration_records
+from robokin.reports.answer_stream import AnswerStream
+from robokin.tables.carried import Carried, nothing
+from robokin.tables.orientations import orientation, pose_columns, pose_table
+from robokin.tables.written_rows import csv_header, csv_rows, page
+from robokin.units import Units
+
+RECORD_KEYS = ("robot", "units", "q", "within_limits", "pose", "frames", "schema")
+"""What a JSON document says itself; an `id` of the input takes the place of its own, which `robot` says too."""
+
+
+def csv_columns(robot: Robot, orientation: str | None) -> list[str]:
+    """The columns of a CSV."""
+    return [*(f"q{i}" for i in range(1, robot.n + 1)), *pose_columns(orientation or "rpy")]
+
+
+@dataclass(frozen=True)
+class PoseReport(AnswerStream[PoseBlock]):
+    """Blocks of poses as bytes.
+
+    `orientation` is how to say it, None as usual; `alone` tells that one configuration was asked for, by an option;
+    `carried` is what goes through.
+    """
+
+    robot: Robot
+    units: Units
+    orientation: str | None
+    alone: bool
+    carried: Carried = field(default_factory=nothing)
+
+    def documents(self, blocks: Iterable[PoseBlock]) -> Iterator[Iterable[dict[str, Any]]]:
+        """The documents of each block."""
+        more = [self.orientation] if self.orientation else []
+        for poses in blocks:
+            yield map(self.carried.in_front_of, configuration_records(self.robot, self.units, poses, more))
+
+    def csv(self, answers: Iterable[PoseBlock]) -> Iterator[bytes]:
+        """A row a configuration."""
+        columns = csv_columns(self.robot, self.orientation)
+        begun = False
+        for poses in answers:
+            table = np.concatenate([poses.q, pose_table(poses.T, self.orientation or "rpy", self.units)], axis=1)
+            head = b"" if begun else csv_header(columns)
+            yield self.carried.before(head, csv_rows(table))
+            begun = True
+        if not begun:
+            yield self.carried.before(csv_header(columns), b"")
+
+    def npy(self, answers: Iterable[PoseBlock], stream: IO[bytes]) -> None:
+        """The matrices (m, 4, 4), or with --as the columns of the poses, or with frames all of these."""
+        from robokin.tables.array_writer import ArrayWriter
+
+        kind = self.orientation or "matrix"
+        writer: ArrayWriter | None = None
+        shape: tuple[int, ...] = (4, 4) if kind == "matrix" else (len(pose_columns(kind)),)
+        for poses in answers:
+            block = poses.T if kind == "matrix" else pose_table(poses.T, kind, self.units)
+            if poses.frames is not None:
+                block = poses.frames
+            writer = writer or ArrayWriter(stream, block.shape[1:])
+            writer.write(block)
+        (writer or ArrayWriter(stream, shape)).close()
+
+    def table(self, answers: Iterable[PoseBlock]) -> Iterator[bytes]:
+        """A page, or a line for each configuration."""
+        if self.alone:
+            from robokin.reports.page_tables import render
+
+            yield from (render(*self.page(poses)) for poses in answers)
+            return
+        from robokin.reports.number_columns import NumberColumns
+
+        kind = self.orientation or "rpy"
+        head = f"{self.robot.name}  lengths in {self.units.length}, angles in {self.units.angle}\n\n"
+        columns = None
+        for poses in answers:
+            numbers = range(poses.first, poses.first + len(poses.q))
+            if kind == "matrix" or poses.frames is not None:
+                columns = columns or NumberColumns([("#", 5), ("frame", 5), ("", 1)], "nsap", "uuul", self.units)
+                lines = columns.lines(*self.matrices(poses, numbers))
+            else:
+                names = pose_columns(kind)
+                kinds = "lll" + ("aaa" if len(names) == 6 else "uuuu")
+                columns = columns or NumberColumns([("#", 5)], names, kinds, self.units)
+                lines = columns.lines(((number,) for number in numbers), pose_table(poses.T, kind, self.units))
+            yield page(f"{head}{columns.heading if head else ''}{lines}")
+            head = ""
+
+    def matrices(self, poses: PoseBlock, numbers: Iterable[int]) -> tuple[list[tuple[object, str, str]], Array]:
+        """Three lines for each matrix of a block, with their labels."""
+        all_frames = poses.T[:, None]
+        names = ["hand"]
+        if poses.frames is not None:
+            all_frames = np.concatenate([poses.frames, all_frames], axis=1)
+            names = [*(str(i) for i in range(1, poses.frames.shape[1] + 1)), "hand"]
+        first = [(name if axis == "x" else "", axis) for name in names for axis in "xyz"]
+        labels: list[tuple[object, str, str]] = [
+            (number if k == 0 else "", *label) for number in numbers for k, label in enumerate(first)
+        ]
+        return labels, all_frames[:, :, :3].reshape(-1, 4)
+
+    def page(self, poses: PoseBlock) -> list[Any]:
+        """All that can be said of one pose, for eyes."""
+        from robokin.reports.page_tables import heading, number_table, pairs
+
+        T = poses.T[0]
+        parts: list[Any] = [heading(self.robot.name, f"lengths in {self.units.length}, angles in {self.units.angle}")]
+        parts += ["", number_table("nsap", T[:3].tolist(), "xyz"), ""]
+        entries = [("q", "  ".join(show(value) for value in poses.q[0]))] if self.robot.n else []
+        entries.append(("position", "  ".join(show(value) for value in T[:3, 3])))
+        labels = {"rpy": "roll pitch yaw", "quaternion": "quaternion", "euler": "Euler ZYZ", "abc": "A B C",
+                  "quaternion-xyzw": "x y z w", "rotvec": "rotation vector", "wpr": "W P R"}  # fmt: skip
+        for kind in dict.fromkeys([self.orientation or "rpy", "rpy", "quaternion"]):
+            if kind in labels:
+                values = orientation(T, kind, self.units)
+                entries.append((labels[kind], "  ".join(show(value) for value in values)))
+        parts.append(pairs(entries))
+        for i, frame in enumerate([] if poses.frames is None else poses.frames[0], start=1):
+            parts += ["", heading(f"frame {i}"), number_table("nsap", frame[:3].tolist(), "xyz")]
+        return parts

@@ -1,0 +1,191 @@
+"""Answers of `robokin ik`, a block at a time: from poses to every format."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+
+from robokin.arrays import Array
+from robokin.inverse.full_turns import turns_of_limits
+from robokin.inverse.solutions import BatchResult, Result
+from robokin.inverse.solve import solve_many
+from robokin.inverse.within_tolerance import within_tolerance
+from robokin.model import Robot
+from robokin.records.solution_records import SolutionRecords
+from robokin.reports.answer_stream import AnswerStream
+from robokin.tables.carried import Carried, nothing
+from robokin.tables.written_rows import csv_header, csv_records
+
+if TYPE_CHECKING:
+    from robokin.records.worked_step_records import Explanation
+
+
+TURNED_ROWS = 10_000
+"""Full turns of so many postures are held at a time: with eight postures a target some 50 MB of rows."""
+
+
+def csv_columns(robot: Robot) -> list[str]:
+    """The columns of a CSV."""
+    names = [f"q{i}" for i in range(1, robot.n + 1)]
+    return ["target", "solution", *names, "branch", "within_limits", "position_error", "angle_error", "reason"]
+
+
+@dataclass
+class SolutionReport(AnswerStream[Array]):
+    """Answers to blocks of poses (m, 4, 4) [m] as bytes, and how many targets had none.
+
+    `tolerances` [m, rad]: within them the nearest pose will do; None asks for exact ones. `arguments` go to
+    the solver; `alone` tells that one target was asked for, by an option; `explain` that worked steps are wanted.
+    """
+
+    records: SolutionRecords
+    tolerances: tuple[float | None, float | None]
+    arguments: dict[str, Any]
+    alone: bool
+    explain: bool = False
+    carried: Carried = field(default_factory=nothing)
+    count: int = 0
+    unreached: int = 0
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that is asked about."""
+        return self.records.robot
+
+    # The answers ------------------------------------------------------------------------------------------
+
+    def batches(self, blocks: Iterable[Array]) -> Iterator[tuple[Array, BatchResult]]:
+        """Each block (m, 4, 4) [m] with its answers."""
+        step = TURNED_ROWS // turns_of_limits(self.robot) + 1 if self.arguments.get("turns") else None
+        for block in blocks:
+            for start in range(0, len(block), step or max(len(block), 1)):
+                T = block[start : start + step] if step else block
+                yield T, solve_many(self.robot, T, motions=self.alone, **self.arguments)
+
+    def results(self, blocks: Iterable[Array]) -> Iterator[tuple[Array, Result]]:
+        """Each target (4, 4) [m] with its answer."""
+        for T, batch in self.batches(blocks):
+            for target, result in zip(T, batch, strict=True):
+                result = self.accepted(target, result)
+                self.count += 1
+                self.unreached += not result.reachable
+                yield target, result
+
+    def accepted(self, target: Array, result: Result) -> Result:
+        """The result, or that of the nearest pose where the tolerances allow it."""
+        return within_tolerance(self.robot, target, result, *self.tolerances, **self.arguments)
+
+    def documents(self, blocks: Iterable[Array]) -> Iterator[Iterable[dict[str, Any]]]:
+        """The document of each answer, as it comes."""
+        for target, result in self.results(blocks):
+            record = self.records.record(target, result)
+            if self.explain:
+                record["explanation"] = self.explanation(target, result).record()
+            yield [self.carried.in_front_of(record)]
+
+    def explanation(self, target: Array, result: Result) -> Explanation:
+        """The worked steps behind an answer."""
+        from robokin.records.worked_step_records import explanation_of
+
+        return explanation_of(self.records.robot, self.records.units, target, result, **self.arguments)
+
+    # Formats ----------------------------------------------------------------------------------------------
+
+    def csv(self, blocks: Iterable[Array]) -> Iterator[bytes]:
+        """A row a solution. Works on arrays: most of the time of a batch would else go into objects."""
+        header = csv_header(csv_columns(self.robot))
+        for T, batch in self.batches(blocks):
+            listed = np.arange(batch.q.shape[1]) < batch.count[:, None]
+            solutions = zip(
+                self.records.joints(batch.q[listed]),
+                batch.branches(),
+                batch.within_limits[listed].tolist(),
+                (batch.position_error[listed] / self.records.units.metres).tolist(),
+                (batch.angle_error[listed] / self.records.units.radians).tolist(),
+                strict=True,
+            )
+            rows: list[list[Any]] = []
+            through: list[list[str]] = []
+            for i, count in enumerate(batch.count.tolist()):
+                self.count += 1
+                for k in range(1, count + 1):
+                    q, branch, *rest = next(solutions)
+                    rows.append([self.count, k, *q, _one_cell(branch), *rest, ""])
+                if not count:
+                    rows += self.exceptional(T[i], batch, i)
+                through += [self.carried.cells()] * (len(rows) - len(through))
+            yield self.carried.before(header, csv_records(None, rows), through)
+            header = b""
+        yield self.carried.before(header, b"")
+
+    def exceptional(self, target: Array, batch: BatchResult, i: int) -> Iterator[list[Any]]:
+        """The rows of a target without an exact solution."""
+        reason = None
+        if self.tolerances == (None, None):
+            reason = batch.reason(i)
+        else:
+            result = self.accepted(target, batch[i])
+            reason = result.reason
+            for k, solution in enumerate(result.solutions, start=1):
+                q, branch, inside, position, angle, *_ = self.records.solution(solution).values()
+                yield [self.count, k, *q, _one_cell(branch), inside, position, angle, ""]
+        if reason is not None:
+            self.unreached += 1
+            yield [self.count, 0, *[""] * (self.robot.n + 4), reason]
+
+    def npy(self, blocks: Iterable[Array], stream: IO[bytes]) -> None:
+        """The solutions (m, k, n) in the units, padded with NaN; k is the greatest number of solutions.
+
+        How many columns the array has is known at the end only: a temporary file holds the solutions until then.
+        """
+        from robokin.tables.array_writer import ArrayWriter
+
+        with tempfile.TemporaryFile() as kept:
+            shapes: list[tuple[int, int]] = []
+            for block in blocks:
+                results = [result for _, result in self.results([block])]
+                q = [np.array(self.records.joints(_listed(result, self.robot.n))) for result in results]
+                most = max(map(len, q), default=0)
+                padded = np.full((len(q), most, self.robot.n), np.nan)
+                for row, values in zip(padded, q, strict=True):
+                    row[: len(values)] = values.reshape(-1, self.robot.n)
+                kept.write(padded.tobytes())
+                shapes.append((len(q), most))
+            kept.seek(0)
+            most = max((count for _, count in shapes), default=0)
+            writer = ArrayWriter(stream, (most, self.robot.n))
+            for rows, count in shapes:
+                whole = np.full((rows, most, self.robot.n), np.nan)
+                size = rows * count * self.robot.n
+                whole[:, :count] = np.frombuffer(kept.read(8 * size)).reshape(rows, count, self.robot.n)
+                writer.write(whole)
+            writer.close()
+
+    def table(self, blocks: Iterable[Array]) -> Iterator[bytes]:
+        """A page, or a heading and a paragraph for each target."""
+        from robokin.reports.solution_tables import AnswerTable
+
+        limits, turns = bool(self.arguments.get("limits", True)), bool(self.arguments.get("turns", False))
+        drawn = AnswerTable(self.records, limits, turns, self.arguments.get("most"))
+        head = drawn.head()
+        for target, result in self.results(blocks):
+            yield head + drawn.paragraph("" if self.alone else f"target {self.count}: ", result)
+            head = b""
+            if self.explain:
+                from robokin.reports.worked_step_pages import WorkedStepPage
+
+                yield WorkedStepPage(self.explanation(target, result)).page()
+        yield head
+
+
+def _one_cell(branch: str) -> str:
+    """A branch without commas, so that whoever splits a line at its commas finds the columns."""
+    return branch.replace(", ", " / ")
+
+
+def _listed(result: Result, n: int) -> Array:
+    return np.array([solution.q for solution in result.solutions]).reshape(-1, n)
