@@ -2,27 +2,15 @@
 
 from __future__ import annotations
 
-import functools
-import inspect
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from robokin.cli.options import (
-    AngleOption,
-    FormatOption,
-    JsonOption,
-    LengthOption,
-    OutputOption,
-    SetOption,
-    choose,
-    effective_units,
-    output_format,
-    parameter_overrides,
-)
+from robokin.cli.option_groups import DescriptionOptions, OptionGroup, OutputOptions
+from robokin.cli.options import SetOption, choose, option
 from robokin.cli.statuses import DONE, NO
 from robokin.errors import InputError, shown
 from robokin.grading.feedback import ANSWER, LEVELS, PART
@@ -40,122 +28,21 @@ VISIBILITIES = ("visible", "hidden", "after_due_date", "after_published")
 LEAST_BUDGET, GREATEST_BUDGET = 0.01, 86400.0
 """Seconds: a clock's ticks and a day."""
 
-
-def _text(name: str, metavar: str, help: str, *others: str) -> Any:
-    return Annotated[str | None, typer.Option(name, *others, metavar=metavar, help=help)]
-
-
-def length_tolerance(help: str) -> Any:
-    """The option --tol of a check."""
-    return _text("--tol", "L", help, "--atol")
-
-
-def angle_tolerance(help: str) -> Any:
-    """The option --tol-angle of a check."""
-    return _text("--tol-angle", "A", help)
-
-
-OPTIONS: dict[str, Any] = {
-    "input": _text("--input", "FILE", "A CSV of answers with a header; - for standard input.", "-i"),
-    "key": _text("--key", "FILE", "With --input: a CSV of the questions, by the same ids."),
-    "follow": Annotated[bool, typer.Option("--follow", help="Read what symbolic links point to.")],
-    "tol": length_tolerance("How far a position may be off.  [default: 0.001 of the arm]"),
-    "tol_angle": angle_tolerance("How far an orientation may be off.  [default: 0.1 deg]"),
-    "rtol": _text("--rtol", "R", "Added to --tol: this part of the right value.  [default: 0]"),
-    "budget": _text("--budget", "SECONDS", "Processor time for each answer.  [default: 10]"),
-    "partial": _text(
-        "--partial", "SCORE", "The least score of an answer with a known mistake, such as another unit."
-    ),
-    "feedback": _text(
-        "--feedback", "LEVEL", "What is told: verdict, part (what is wrong), distance (how far), answer.  "
-        "[default: answer; what Gradescope's students read: part]",
-    ),
-    "gradescope": _text("--gradescope", "FILE", "Also write the results.json that Gradescope reads."),
-    "points": _text("--points", "P", "With --gradescope: total points.  [default: 1 an item]"),
-    "visibility": _text(
-        "--visibility", "WHO", "With --gradescope: visible, hidden, after_due_date or after_published."
-    ),
-    "output": OutputOption, "format": FormatOption, "json": JsonOption,
-    "angle": AngleOption, "length": LengthOption, "set_": SetOption,
-}  # fmt: skip
-"""The options by the names of their parameters."""
-
-FILES = ("input", "key", "follow")
-TOLERANCES = ("tol", "tol_angle", "rtol")
-DELIVERY = ("feedback", "gradescope", "points", "visibility", "output", "format", "json")
-MARKS = ("budget", "partial", *DELIVERY, "angle", "length", "set_")
+FollowOption = Annotated[bool, typer.Option("--follow", help="Read what symbolic links point to.")]
 
 Kind = TypeVar("Kind", bound="Subject")
 
 
-def marking(*names: str, **own: Any) -> Callable[[Callable[..., int]], Callable[..., int]]:
-    """A command with the options of some names behind its own; it is handed what they say as its argument `way`.
+class AnswerFileOptions(OptionGroup):
+    """A file of answers, in place of those that options say."""
 
-    own: declarations that differ from those of `OPTIONS`.
-    """
+    input: Annotated[
+        str | None, option("--input -i", "FILE", "A CSV of answers with a header; - for standard input.")
+    ] = None
+    key: Annotated[str | None, option("--key", "FILE", "With --input: a CSV of the questions, by the same ids.")] = None
+    follow: FollowOption = False
 
-    def with_options(function: Callable[..., int]) -> Callable[..., int]:
-        hints = get_type_hints(function, include_extras=True)
-        parameters = [
-            parameter.replace(annotation=hints[name])
-            for name, parameter in inspect.signature(function).parameters.items()
-            if name != "way"
-        ]
-        for name in names:
-            default = False if name in ("follow", "json") else None
-            kind, annotation = inspect.Parameter.POSITIONAL_OR_KEYWORD, own.get(name, OPTIONS[name])
-            parameters.append(inspect.Parameter(name, kind, default=default, annotation=annotation))
-
-        @functools.wraps(function)
-        def command(**typed: Any) -> int:
-            shared = {name: typed.pop(name) for name in names}
-            return function(**typed, way=Marking(shared))
-
-        command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-        command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
-        return command
-
-    return with_options
-
-
-class Marking:
-    """What the options that checks share say: how answers are marked, and where the marks go.
-
-    Raises InputError before any work is done.
-    """
-
-    def __init__(self, typed: Mapping[str, Any]) -> None:
-        """`typed` is what was typed, by the names of `OPTIONS`."""
-        from robokin.tables.sink import format_of
-
-        self.typed = typed
-        self.input: str | None = typed.get("input")
-        self.key: str | None = typed.get("key")
-        self.follow = bool(typed.get("follow"))
-        self.gradescope: str | None = typed["gradescope"]
-        self.kind = format_of(typed["output"], output_format(typed["format"], typed["json"]))
-        for name in ("points", "visibility") if self.gradescope is None else ():
-            if typed[name] is not None:
-                raise InputError(f"--{name} is about the results of an autograder, expected --gradescope FILE with it")
-        self.points = None if typed["points"] is None else plain_number(typed["points"], "--points")
-        self.feedback = choose(typed["feedback"], LEVELS, "--feedback")
-        self.visibility = choose(typed["visibility"], VISIBILITIES, "--visibility")
-        self.budget = _budget(typed.get("budget"))
-        self.partial = _partial(typed.get("partial"))
-
-    @property
-    def rules(self) -> Rules:
-        """What holds for all marks."""
-        from robokin.grading.marking import Rules
-
-        return Rules(self.budget, self.partial)
-
-    @property
-    def overrides(self) -> dict[str, str]:
-        """The parameters of --set."""
-        return parameter_overrides(self.typed["set_"])
-
-    def one_source(self, options: dict[str, object]) -> None:
+    def refuse_beside(self, options: dict[str, object]) -> None:
         """Raise InputError where answers come from options and from a file."""
         given = [name for name, value in options.items() if value]
         if self.input is not None and given:
@@ -165,38 +52,110 @@ class Marking:
         if self.input == "-" == self.key:
             raise InputError("--input and --key are both standard input, expected a file for one of them")
 
-    def subject(self, kind: type[Kind], robot: str, *, table: bool = False, **more: Any) -> Kind:
-        """What answers about a robot are marked against; `table` tells whether its table is asked for."""
-        from robokin.cli.arguments import load_robot
-        from robokin.grading.tolerance import default_tolerance
 
-        model = load_robot(robot, self.overrides)
-        if not (model.n or table):
-            raise InputError(f"{model.name} has no joints, expected a robot that can move")
-        units = effective_units(model.units, self.typed["length"], self.typed["angle"])
-        return kind(model, units, self.tolerance(default_tolerance(model, table=table), units), **more)
+class TableToleranceOptions(OptionGroup):
+    """How far the cells of a table may be off."""
 
-    def tolerance(self, default: Tolerance, units: Units) -> Tolerance:
-        """The tolerance that the options state, the default's values where they do not. Raises InputError."""
+    tol: Annotated[
+        str | None, option("--tol --atol", "L", "How far a length may be off.  [default: 0.0001 of the arm]")
+    ] = None
+    tol_angle: Annotated[
+        str | None, option("--tol-angle", "A", "How far an angle may be off.  [default: 0.01 deg]")
+    ] = None
+
+    def over(self, default: Tolerance, units: Units) -> Tolerance:
+        """A tolerance with what was stated in its place. Raises InputError."""
         from robokin.cli.arguments import parse_numbers
 
         stated = {}
-        for name, option, angle, factor in (
-            ("position", "--tol", False, units.metres),
-            ("angle", "--tol-angle", True, units.radians),
-        ):
-            text = self.typed["tol_angle" if angle else "tol"]
+        for name, option_name, text, factor in (
+            ("position", "--tol", self.tol, units.metres), ("angle", "--tol-angle", self.tol_angle, units.radians)
+        ):  # fmt: skip
             if text is not None:
-                (value,) = parse_numbers(text, option, [angle], units, "an angle" if angle else "a length")
+                angle = name == "angle"
+                (value,) = parse_numbers(text, option_name, [angle], units, "an angle" if angle else "a length")
                 if value < 0.0:
-                    raise InputError(f"{option}: found {shown(text)}, expected 0 or more")
+                    raise InputError(f"{option_name}: found {shown(text)}, expected 0 or more")
                 stated[name] = float(value * factor)
-        relative = self.typed.get("rtol")
-        return replace(default, **stated, relative=0.0 if relative is None else plain_number(relative, "--rtol"))
+        return replace(default, **stated, relative=plain_number(getattr(self, "rtol", None), "--rtol") or 0.0)
 
-    def finish(self, check: str, robot: str, subject: Subject, items: Iterable[Item]) -> int:
-        """Mark the answers and write the marks; `robot` is what the robot was called. The status."""
-        return self.deliver(subject.report(check, subject.robot.id or robot, tuple(items)))
+
+class ToleranceOptions(TableToleranceOptions):
+    """How far poses and joint values may be off."""
+
+    tol: Annotated[
+        str | None, option("--tol --atol", "L", "How far a position may be off.  [default: 0.001 of the arm]")
+    ] = None
+    tol_angle: Annotated[
+        str | None, option("--tol-angle", "A", "How far an orientation may be off.  [default: 0.1 deg]")
+    ] = None
+    rtol: Annotated[
+        str | None, option("--rtol", "R", "Added to --tol: this part of the right value.  [default: 0]")
+    ] = None
+
+
+class JacobianToleranceOptions(ToleranceOptions):
+    """How far the entries of a Jacobian may be off."""
+
+    tol: Annotated[
+        str | None, option("--tol --atol", "L", "How far a length may be off.  [default: 0.001 of the arm]")
+    ] = None
+    tol_angle: Annotated[
+        str | None, option("--tol-angle", "A", "How far a direction may be off.  [default: 0.1 deg]")
+    ] = None
+
+
+class FeedbackOptions(OptionGroup):
+    """Who is told how much."""
+
+    feedback: Annotated[
+        str | None,
+        option(
+            "--feedback",
+            "LEVEL",
+            "What is told: verdict, part (what is wrong), distance (how far), answer.  [default: answer; what "
+            "Gradescope's students read: part]",
+        ),
+    ] = None
+    gradescope: Annotated[
+        str | None, option("--gradescope", "FILE", "Also write the results.json that Gradescope reads.")
+    ] = None
+    points: Annotated[str | None, option("--points", "P", "With --gradescope: total points.  [default: 1 an item]")] = (
+        None
+    )
+    visibility: Annotated[
+        str | None,
+        option("--visibility", "WHO", "With --gradescope: visible, hidden, after_due_date or after_published."),
+    ] = None
+
+
+class RuleOptions(OptionGroup):
+    """What holds for all marks."""
+
+    budget: Annotated[str | None, option("--budget", "SECONDS", "Processor time for each answer.  [default: 10]")] = (
+        None
+    )
+    partial: Annotated[
+        str | None,
+        option("--partial", "SCORE", "The least score of an answer with a known mistake, such as another unit."),
+    ] = None
+
+
+# Options stand in the help in the order of the groups from the last to the first, then a class's own.
+
+
+class DeliveryOptions(OutputOptions, FeedbackOptions):
+    """Where marks go. Raises InputError for what is wrong with it before any work is done."""
+
+    def __init__(self, **typed: Any) -> None:
+        super().__init__(**typed)
+        self.written_as = self.kind
+        for name in ("points", "visibility") if self.gradescope is None else ():
+            if typed[name] is not None:
+                raise InputError(f"--{name} is about the results of an autograder, expected --gradescope FILE with it")
+        self.worth = plain_number(self.points, "--points")
+        choose(self.feedback, LEVELS, "--feedback")
+        choose(self.visibility, VISIBILITIES, "--visibility")
 
     def deliver(self, report: Report) -> int:
         """Write the marks; the status."""
@@ -210,42 +169,69 @@ class Marking:
                 "an autograder marks one submission at a time"
             )
         # A page beside results for students may end up before their eyes as well; data are for the teacher's scripts.
-        students = self.gradescope is not None and self.kind == "table"
-        data = written(report, self.kind, self.feedback or (PART if students else ANSWER))
+        students = self.gradescope is not None and self.written_as == "table"
+        data = written(report, self.written_as, self.feedback or (PART if students else ANSWER))
         if self.gradescope is not None:
-            document = results(report, self.points, self.visibility, self.feedback or PART)
+            document = results(report, self.worth, self.visibility, self.feedback or PART)
             with sink(self.gradescope, "--gradescope") as stream:
                 stream.write(document)
-        with sink(self.typed["output"]) as stream:
+        with sink(self.file) as stream:
             stream.write(data)
         return DONE if report.right else NO
 
 
-def _budget(text: str | None) -> float:
-    """The seconds of --budget. Raises InputError."""
-    seconds = BUDGET if text is None else plain_number(text, "--budget")
-    if not LEAST_BUDGET <= seconds <= GREATEST_BUDGET:
-        raise InputError(
-            f"--budget: found {shown(text or '')}, expected seconds for each answer, "
-            f"{LEAST_BUDGET:g} to {GREATEST_BUDGET:g}"
-        )
-    return seconds
+class CountMarkOptions(DeliveryOptions):
+    """What marks of counts need."""
+
+    set_: SetOption = None
 
 
-def _partial(text: str | None) -> float | None:
-    """The score of --partial. Raises InputError."""
-    score = None if text is None else plain_number(text, "--partial")
-    if text is not None and score is not None and score > 1.0:
-        raise InputError(f"--partial: found {shown(text)}, expected a score from 0 to 1")
-    return score
+class MarkOptions(DescriptionOptions, DeliveryOptions, RuleOptions):
+    """How answers about a robot are marked, and where the marks go."""
+
+    def __init__(self, **typed: Any) -> None:
+        super().__init__(**typed)
+        self.seconds, self.least = plain_number(self.budget, "--budget"), plain_number(self.partial, "--partial")
+        if self.seconds is not None and not LEAST_BUDGET <= self.seconds <= GREATEST_BUDGET:
+            expected = f"expected seconds for each answer, {LEAST_BUDGET:g} to {GREATEST_BUDGET:g}"
+            raise InputError(f"--budget: found {shown(self.budget or '')}, {expected}")
+        if self.least is not None and self.least > 1.0:
+            raise InputError(f"--partial: found {shown(self.partial or '')}, expected a score from 0 to 1")
+
+    @property
+    def rules(self) -> Rules:
+        """What holds for all marks."""
+        from robokin.grading.marking import Rules
+
+        return Rules(BUDGET if self.seconds is None else self.seconds, self.least)
+
+    def subject(
+        self, kind: type[Kind], name: str, allowed: TableToleranceOptions, *, table: bool = False, **more: Any
+    ) -> Kind:
+        """What answers about a robot are marked against; `table` tells whether its table is asked for."""
+        from robokin.cli.arguments import load_robot
+        from robokin.cli.options import parameter_overrides
+        from robokin.grading.tolerance import default_tolerance
+
+        robot = load_robot(name, parameter_overrides(self.set_))
+        if not (robot.n or table):
+            raise InputError(f"{robot.name} has no joints, expected a robot that can move")
+        units = self.over(robot.units)
+        return kind(robot, units, allowed.over(default_tolerance(robot, table=table), units), **more)
+
+    def finish(self, check: str, name: str, subject: Subject, items: Iterable[Item]) -> int:
+        """Mark the answers and write the marks; `name` is what the robot was called. The status."""
+        return self.deliver(subject.report(check, subject.robot.id or name, tuple(items)))
 
 
-def plain_number(text: str, option: str) -> float:
-    """A finite number of 0 or more. Raises InputError."""
+def plain_number(text: str | None, name: str) -> float | None:
+    """A finite number of 0 or more, None for none. Raises InputError."""
+    if text is None:
+        return None
     try:
         value = float(text)
     except ValueError:
         value = math.nan
     if not (math.isfinite(value) and value >= 0.0):
-        raise InputError(f"{option}: found '{shown(text)}', expected a number of 0 or more")
+        raise InputError(f"{name}: found '{shown(text)}', expected a number of 0 or more")
     return value

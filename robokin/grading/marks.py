@@ -46,10 +46,10 @@ def check_pose(
     Position and orientation are compared apart; with the task `position` the orientation does not count. By default
     the tolerance is that of `robokin check fk`. Raises InputError.
     """
-    robot, allowed = expect_robot(robot), _allowed(robot, tolerance)
+    robot, allowed = expect_robot(robot), expect_tolerance(robot, tolerance)
     chosen = expect_choice(task, ("pose", "position"), "task")
-    right = forward_kinematics(robot, _configuration(robot, q))
-    position, angle = pose_errors(right, _target(T), chosen)
+    right = forward_kinematics(robot, expect_configuration(robot, q))
+    position, angle = pose_errors(right, expect_target(T), chosen)
     return PoseMark(pose_status(position, angle, allowed, right), position, angle, right)
 
 
@@ -65,8 +65,10 @@ def check_configuration(
 
     By default the tolerance is that of `robokin check ik`. Raises InputError.
     """
-    robot, allowed, chosen = expect_robot(robot), _allowed(robot, tolerance), _task(task)
-    return reached(robot, _configuration(robot, q), _target(T), allowed, chosen, expect_flag(limits, "limits"))
+    robot, allowed, chosen = expect_robot(robot), expect_tolerance(robot, tolerance), _task(task)
+    return reached(
+        robot, expect_configuration(robot, q), expect_target(T), allowed, chosen, expect_flag(limits, "limits")
+    )
 
 
 def check_solutions(
@@ -81,12 +83,12 @@ def check_solutions(
 
     By default the tolerance is that of `robokin check ik --all`. Raises InputError.
     """
-    robot, allowed, chosen = expect_robot(robot), _allowed(robot, tolerance), _task(task)
+    robot, allowed, chosen = expect_robot(robot), expect_tolerance(robot, tolerance), _task(task)
     rows = expect_kind(answers, (list, tuple, np.ndarray), "answers", "a list of configurations (n,)")
     if isinstance(rows, np.ndarray) and rows.ndim == 0:
         raise InputError("answers: found a single number, expected a list of configurations (n,)")
-    given = [_configuration(robot, one) for one in rows]
-    return mark_set(robot, given, _target(T), allowed, chosen, expect_flag(limits, "limits"))
+    given = [expect_configuration(robot, one) for one in rows]
+    return mark_set(robot, given, expect_target(T), allowed, chosen, expect_flag(limits, "limits"))
 
 
 def check_table(
@@ -98,29 +100,37 @@ def check_table(
     dh`. Raises InputError.
     """
     right, other = expect_robot(robot), expect_robot(given, "given")
-    allowed = default_tolerance(right, table=True) if tolerance is None else _allowed(right, tolerance)
-    names = expect_kind(up_to, (list, tuple, set, frozenset), "up_to", f"some of {', '.join(OPEN)}, such as ['base']")
-    return compare_tables(right, other, allowed, frozenset(expect_choice(name, OPEN, "up_to") for name in names))
+    allowed = expect_tolerance(right, tolerance, table=True)
+    return compare_tables(right, other, allowed, expect_open(up_to))
 
 
-def _allowed(robot: Robot, tolerance: Tolerance | None) -> Tolerance:
+def expect_tolerance(robot: Robot, tolerance: Tolerance | None, *, table: bool = False) -> Tolerance:
+    """A tolerance, by default that for answers about the robot or its table. Raises InputTypeError."""
     if tolerance is None:
-        return default_tolerance(robot)
+        return default_tolerance(robot, table=table)
     how = "a robokin.Tolerance, such as robokin.Tolerance(position=1e-3, angle=2e-3)"
     return cast(Tolerance, expect_kind(tolerance, Tolerance, "tolerance", how))
+
+
+def expect_open(up_to: Iterable[str]) -> frozenset[str]:
+    """What may differ between two tables: some of `OPEN`. Raises InputError."""
+    names = expect_kind(up_to, (list, tuple, set, frozenset), "up_to", f"some of {', '.join(OPEN)}, such as ['base']")
+    return frozenset(expect_choice(name, OPEN, "up_to") for name in names)
 
 
 def _task(task: object) -> Task:
     return cast(Task, expect_choice(task, TASKS, "task"))
 
 
-def _configuration(robot: Robot, q: ArrayLike) -> Array:
+def expect_configuration(robot: Robot, q: ArrayLike) -> Array:
+    """Joint values q: (n,) [rad | m]. Raises InputError, also for a robot without joints."""
     if not robot.n:
         raise InputError(f"{robot.name} has no joints, expected a robot that can move")
     return expect_finite(q, "q", f"{robot.n} finite joint values", (robot.n,))
 
 
-def _target(T: ArrayLike) -> Array:
+def expect_target(T: ArrayLike) -> Array:
+    """One pose T: (4, 4) [m]. Raises InputError."""
     poses = target_poses(T)
     if poses.ndim != 2:
         raise InputError(f"T: found an array of shape {poses.shape}, expected one pose (4, 4)")

@@ -5,8 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from typer.core import TyperGroup
-
+from robokin.cli.app import CONTEXT, CommandGroup, build
 from robokin.errors import InputError, did_you_mean, or_list, shown
 
 CHECKS = {
@@ -40,14 +39,8 @@ EXAMPLES = (
 )
 
 
-class CheckGroup(TyperGroup):
+class CheckGroup(CommandGroup):
     """The checks, each loaded when it is asked for."""
-
-    def get_params(self, ctx: Any) -> Any:
-        """The parameters, help included."""
-        from robokin.cli.app import verbatim
-
-        return verbatim(super().get_params(ctx))
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
         """What follows the command's name."""
@@ -66,8 +59,6 @@ class CheckGroup(TyperGroup):
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """The check with a name."""
         if cmd_name in CHECKS:
-            from robokin.cli.app import build
-
             module = import_module(f"robokin.cli.commands.check_{cmd_name}_command")
             command = build(cmd_name, module.command)
             if hasattr(module, "arguments"):
@@ -95,8 +86,6 @@ class CheckGroup(TyperGroup):
 
 def group() -> CheckGroup:
     """The command, which has commands of its own."""
-    from robokin.cli.app import CONTEXT
-
     return CheckGroup(
         name="check",
         help=(

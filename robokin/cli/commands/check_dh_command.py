@@ -6,16 +6,12 @@ from typing import Annotated
 
 import typer
 
-from robokin.cli.check_options import MARKS, Marking, angle_tolerance, length_tolerance, marking
+from robokin.cli.check_options import FollowOption, MarkOptions, TableToleranceOptions
 from robokin.cli.completion import robots
+from robokin.cli.options import option
 from robokin.errors import InputError, did_you_mean, shown
 
 
-@marking(
-    "tol", "tol_angle", "follow", *MARKS,
-    tol=length_tolerance("How far a length may be off.  [default: 0.0001 of the arm]"),
-    tol_angle=angle_tolerance("How far an angle may be off.  [default: 0.01 deg]"),
-)  # fmt: skip
 def command(
     files: Annotated[
         list[str],
@@ -23,21 +19,16 @@ def command(
             metavar="FILE...", help="The tables to be marked: descriptions, or folders of them.", show_default=False
         ),
     ],
+    *,
     against: Annotated[
-        str | None,
-        typer.Option(
-            "--against",
-            metavar="ROBOT",
-            help="The right robot: a name of `robokin list`, or a path.",
-            autocompletion=robots,
-        ),
+        str | None, option("--against", "ROBOT", "The right robot: a name of `robokin list`, or a path.", robots)
     ] = None,
     up_to: Annotated[
-        str | None,
-        typer.Option("--up-to", metavar="PARTS", help="What may differ: base, tool, zero, sign, with commas; or all."),
+        str | None, option("--up-to", "PARTS", "What may differ: base, tool, zero, sign, with commas; or all.")
     ] = None,
-    *,
-    way: Marking,
+    allowed: TableToleranceOptions,
+    follow: FollowOption = False,
+    way: MarkOptions,
 ) -> int:
     """Mark tables: is it kinematically the same robot?
 
@@ -62,8 +53,8 @@ def command(
 
     if against is None:
         raise InputError("--against is missing, expected --against ROBOT, the right table")
-    check = way.subject(TableCheck, against, table=True, free=_open_parts(up_to))
-    found = submissions(files, way.follow)
+    check = way.subject(TableCheck, against, allowed, table=True, free=_open_parts(up_to))
+    found = submissions(files, follow)
     check = replace(check, alone=len(found) == 1 and way.gradescope is None)
     return way.finish("dh", against, check, marked(check, list(map(table_task, found)), way.rules))
 

@@ -6,15 +6,14 @@ from typing import Annotated, Any
 
 import typer
 
-from robokin.cli.check_options import DELIVERY, Marking, marking
+from robokin.cli.check_options import CountMarkOptions
 from robokin.cli.completion import robots, words
-from robokin.cli.options import choose
+from robokin.cli.options import choose, option, parameter_overrides
 from robokin.errors import InputError, shown
 
 SPACES = ("planar", "spherical", "spatial")
 
 
-@marking(*DELIVERY, "set_")
 def command(
     name: Annotated[
         str | None,
@@ -25,28 +24,17 @@ def command(
             show_default=False,
         ),
     ] = None,
-    expect: Annotated[str | None, typer.Option("--expect", metavar="N", help="The answer for Grübler's count.")] = None,
-    mobility: Annotated[
-        str | None, typer.Option("--mobility", metavar="N", help="The answer for the true mobility.")
-    ] = None,
-    links: Annotated[
-        str | None, typer.Option("--links", metavar="N", help="Without a description: links, with the ground.")
-    ] = None,
+    *,
+    expect: Annotated[str | None, option("--expect", "N", "The answer for Grübler's count.")] = None,
+    mobility: Annotated[str | None, option("--mobility", "N", "The answer for the true mobility.")] = None,
+    links: Annotated[str | None, option("--links", "N", "Without a description: links, with the ground.")] = None,
     joints: Annotated[
-        str | None,
-        typer.Option("--joints", metavar="JOINTS", help="With --links: joints by type, such as 6R or 12S,6P."),
+        str | None, option("--joints", "JOINTS", "With --links: joints by type, such as 6R or 12S,6P.")
     ] = None,
     space: Annotated[
-        str | None,
-        typer.Option(
-            "--space",
-            metavar="SPACE",
-            help="With --links: planar, spherical or spatial.",
-            autocompletion=words(*SPACES),
-        ),
+        str | None, option("--space", "SPACE", "With --links: planar, spherical or spatial.", words(*SPACES))
     ] = None,
-    *,
-    way: Marking,
+    way: CountMarkOptions,
 ) -> int:
     """Mark an answered number of freedoms: Grübler's count, the true mobility, or both.
 
@@ -64,9 +52,9 @@ def command(
     given = [option for option, value in bare.items() if value is not None]
     if name is not None and given:
         raise InputError(f"{given[0]} counts without a description, expected it without {name}")
-    if name is None and way.typed["set_"]:
+    if name is None and way.set_:
         raise InputError("--set is for a description, expected its name")
-    record = _counted(links, joints, space) if name is None else _described(name, way.overrides)
+    record = _counted(links, joints, space) if name is None else _described(name, parameter_overrides(way.set_))
     items = []
     if expect is not None:
         items.append(count_item("count", expect, "--expect", record["grubler"], ""))

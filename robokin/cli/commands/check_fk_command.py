@@ -4,36 +4,30 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
-from robokin.cli.check_options import FILES, MARKS, TOLERANCES, Marking, marking
+from robokin.cli.check_options import AnswerFileOptions, MarkOptions, ToleranceOptions
 from robokin.cli.completion import named_poses
-from robokin.cli.options import RobotArgument
+from robokin.cli.options import RobotArgument, option
 from robokin.errors import InputError
 
 
-@marking(*FILES, *TOLERANCES, *MARKS)
 def command(
     robot: RobotArgument,
+    *,
     q: Annotated[
         list[str] | None,
-        typer.Option(
-            "--q",
-            metavar="Q",
-            help="The joint values of the question, or a named pose; repeatable.",
-            autocompletion=named_poses,
-        ),
+        option("--q", "Q", "The joint values of the question, or a named pose; repeatable.", named_poses),
     ] = None,
     expect: Annotated[
         list[str] | None,
-        typer.Option(
+        option(
             "--expect",
-            metavar="POSE",
-            help="The answer: X,Y,Z (position alone), X,Y,Z,roll,pitch,yaw, a 4×4 matrix, or an expression.",
+            "POSE",
+            "The answer: X,Y,Z (position alone), X,Y,Z,roll,pitch,yaw, a 4×4 matrix, or an expression.",
         ),
     ] = None,
-    *,
-    way: Marking,
+    sheet: AnswerFileOptions,
+    allowed: ToleranceOptions,
+    way: MarkOptions,
 ) -> int:
     """Mark poses that were answered for joint values.
 
@@ -54,16 +48,16 @@ def command(
     from robokin.grading.marking import marked, without_repetitions
     from robokin.grading.pose_marks import PoseCheck
 
-    way.one_source({"--q": q, "--expect": expect})
-    check = way.subject(PoseCheck, robot)
-    if way.input is not None:
-        tasks = pose_tasks(way.input, way.key, check.robot, check.units, say, follow=way.follow)
+    sheet.refuse_beside({"--q": q, "--expect": expect})
+    check = way.subject(PoseCheck, robot, allowed)
+    if sheet.input is not None:
+        tasks = pose_tasks(sheet.input, sheet.key, check.robot, check.units, say, follow=sheet.follow)
     elif not q or not expect:
         missing = "--expect" if q else "--q"
         raise InputError(f"{missing} is missing, expected --q and --expect, or --input FILE")
     else:
         tasks = typed_pose_tasks(q, expect, check.robot, check.units)
     items = marked(check, tasks, way.rules)
-    if way.input is not None and way.key is None:
+    if sheet.input is not None and sheet.key is None:
         items = without_repetitions(items)
     return way.finish("fk", robot, check, items)

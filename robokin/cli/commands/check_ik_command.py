@@ -6,52 +6,29 @@ from typing import Annotated
 
 import typer
 
-from robokin.cli.check_options import FILES, MARKS, TOLERANCES, Marking, marking
+from robokin.cli.check_options import AnswerFileOptions, MarkOptions, ToleranceOptions
 from robokin.cli.completion import named_poses
-from robokin.cli.options import RobotArgument
-from robokin.cli.target_options import (
-    ApproachOption,
-    EulerOption,
-    MatrixOption,
-    PhiOption,
-    PoseOption,
-    QuatOption,
-    RpyOption,
-    XyOption,
-    XyzOption,
-    target_texts,
-)
+from robokin.cli.options import RobotArgument, option
+from robokin.cli.target_options import TargetOptions
 from robokin.errors import InputError
 
 
-@marking(*FILES, *TOLERANCES, *MARKS)
 def command(
     robot: RobotArgument,
+    *,
     q: Annotated[
         list[str] | None,
-        typer.Option(
-            "--q",
-            metavar="Q",
-            help="The answer, or `none`; several are marked as the set of all solutions.",
-            autocompletion=named_poses,
-        ),
+        option("--q", "Q", "The answer, or `none`; several are marked as the set of all solutions.", named_poses),
     ] = None,
-    pose: PoseOption = None,
-    matrix: MatrixOption = None,
-    xyz: XyzOption = None,
-    rpy: RpyOption = None,
-    euler: EulerOption = None,
-    quat: QuatOption = None,
-    approach: ApproachOption = None,
-    xy: XyOption = None,
-    phi: PhiOption = None,
+    target: TargetOptions,
     every: Annotated[
         bool, typer.Option("--all", help="All solutions are asked for, also of a question with one answer.")
     ] = False,
     any_: Annotated[bool, typer.Option("--any", help="Each answer is marked by itself, also several.")] = False,
     no_limits: Annotated[bool, typer.Option("--no-limits", help="The joint limits do not matter.")] = False,
-    *,
-    way: Marking,
+    sheet: AnswerFileOptions,
+    allowed: ToleranceOptions,
+    way: MarkOptions,
 ) -> int:
     """Mark joint values that were answered for a target, given as for robokin ik.
 
@@ -75,20 +52,19 @@ def command(
     from robokin.grading.joint_marks import JointCheck
     from robokin.grading.marking import AnswerTask, GivenValue, marked
 
-    targets = target_texts(pose, matrix, xyz, rpy, euler, quat, approach, xy, phi)
-    way.one_source({**targets, "--q": q})
+    sheet.refuse_beside({**target.texts, "--q": q})
     if every and any_:
         raise InputError("--all and --any exclude each other, expected one of them")
     asked = True if every else False if any_ else None
-    check = way.subject(JointCheck, robot, limits=not no_limits, every=asked)
-    if way.input is not None:
-        tasks = joint_tasks(way.input, way.key, check.robot, check.units, say, follow=way.follow)
+    check = way.subject(JointCheck, robot, allowed, limits=not no_limits, every=asked)
+    if sheet.input is not None:
+        tasks = joint_tasks(sheet.input, sheet.key, check.robot, check.units, say, follow=sheet.follow)
     else:
-        target = parse_target(targets, check.robot, check.units)
+        question = parse_target(target.texts, check.robot, check.units)
         if not q:
             raise InputError("--q is missing, expected the joint values that were answered, or --input FILE")
-        for note in target.notes:
+        for note in question.notes:
             say(note)
         answers = tuple(typed_joints(text, check.robot, check.units) for text in q)
-        tasks = [AnswerTask("1", GivenValue(AnsweredPose(target.T, target.task)), answers)]
+        tasks = [AnswerTask("1", GivenValue(AnsweredPose(question.T, question.task)), answers)]
     return way.finish("ik", robot, check, marked(check, check.prepared(tasks), way.rules))

@@ -4,41 +4,26 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
-from robokin.cli.check_options import MARKS, TOLERANCES, Marking, angle_tolerance, length_tolerance, marking
+from robokin.cli.check_options import JacobianToleranceOptions, MarkOptions
 from robokin.cli.completion import named_poses, words
-from robokin.cli.options import RobotArgument, choose
+from robokin.cli.options import RobotArgument, choose, option
 from robokin.errors import InputError
 
+FRAMES = ("base", "tool")
 
-@marking(
-    *TOLERANCES, *MARKS,
-    tol=length_tolerance("How far a length may be off.  [default: 0.001 of the arm]"),
-    tol_angle=angle_tolerance("How far a direction may be off.  [default: 0.1 deg]"),
-)  # fmt: skip
+
 def command(
     robot: RobotArgument,
-    q: Annotated[
-        str | None,
-        typer.Option(
-            "--q", metavar="Q", help="The joint values of the question, or a named pose.", autocompletion=named_poses
-        ),
-    ] = None,
-    expect: Annotated[
-        str | None, typer.Option("--expect", metavar="[[..]]", help="The answer: six rows of one number a joint.")
-    ] = None,
-    frame: Annotated[
-        str | None,
-        typer.Option(
-            "--frame",
-            metavar="FRAME",
-            help="Its axes: base or tool.  [default: base]",
-            autocompletion=words("base", "tool"),
-        ),
-    ] = None,
     *,
-    way: Marking,
+    q: Annotated[
+        str | None, option("--q", "Q", "The joint values of the question, or a named pose.", named_poses)
+    ] = None,
+    expect: Annotated[str | None, option("--expect", "[[..]]", "The answer: six rows of one number a joint.")] = None,
+    frame: Annotated[
+        str | None, option("--frame", "FRAME", "Its axes: base or tool.  [default: base]", words(*FRAMES))
+    ] = None,
+    allowed: JacobianToleranceOptions,
+    way: MarkOptions,
 ) -> int:
     """Mark a geometric Jacobian, linear rows before angular ones, entry by entry.
 
@@ -56,11 +41,11 @@ def command(
     from robokin.grading.jacobian_marks import JacobianCheck
     from robokin.grading.marking import AnswerTask, GivenValue, marked
 
-    for option, value in (("--q", q), ("--expect", expect)):
+    for name, value in (("--q", q), ("--expect", expect)):
         if value is None:
-            raise InputError(f"{option} is missing, expected --q and --expect")
-    chosen = choose(frame, ("base", "tool"), "--frame") or "base"
-    check = way.subject(JacobianCheck, robot, frame=chosen)
+            raise InputError(f"{name} is missing, expected --q and --expect")
+    chosen = choose(frame, FRAMES, "--frame") or "base"
+    check = way.subject(JacobianCheck, robot, allowed, frame=chosen)
     values = parse_configuration(str(q), check.robot, check.units) * joint_factors(check.robot, check.units)
     task = AnswerTask("1", GivenValue(values), (jacobian_answer(str(expect), check.robot, check.units, chosen),))
     return way.finish("jacobian", robot, check, marked(check, [task], way.rules))
