@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
 from robokin.arrays import Array
 from robokin.grading.tolerance import Tolerance
+from robokin.kernel.facts import fact
 from robokin.model import Joint, Robot
 from robokin.spatial import invert
 from robokin.units import METRES, Units
@@ -99,7 +99,7 @@ def joint_readings(robot: Robot, q: Array, units: Units, *, single: bool) -> lis
     return found
 
 
-@lru_cache(maxsize=4)
+@fact
 def robot_readings(robot: Robot) -> tuple[tuple[Mistake, Robot], ...]:
     """What a robot may have been taken for: the other convention, no offsets, no tool, no base."""
     return tuple(_robot_readings(robot))

@@ -18,9 +18,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import Any, Literal
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -30,12 +28,14 @@ from robokin.inverse.closed_form.three_parallel_axes import ThreeParallel
 from robokin.inverse.closed_form.three_prismatic import ThreePrismatic
 from robokin.inverse.elimination.loop import Loop, loop_of
 from robokin.inverse.elimination.loop_newton import closing_at
-from robokin.inverse.elimination.padding import Padded, joint_frames_of, padded_chains
+from robokin.inverse.elimination.padding import Padded, padded_chains
 from robokin.inverse.elimination.splits import choose_splits, elimination_of, generic_count, trial_poses
-from robokin.inverse.numeric.pose_error import error_and_jacobian
-from robokin.kernel.chain import Chain, chain_of, chain_size
+from robokin.kernel.chain import Chain, chain_of, chain_size, with_joints, with_joints_at
+from robokin.kernel.facts import fact
+from robokin.kernel.frames import frames, pose
+from robokin.kernel.residual import error_and_jacobian
 from robokin.model import Robot
-from robokin.spatial import exact, rotation_from_axis_angle, transform, z_to
+from robokin.spatial import transform
 
 Task = Literal["pose", "approach", "position"]
 
@@ -99,15 +99,14 @@ class Analysis:
         return np.array([i for i in range(self.chain.n - self.open) if i not in self.idle], dtype=np.intp)
 
 
-_kept: WeakKeyDictionary[Robot, dict[str, Analysis]] = WeakKeyDictionary()
-
-
 def analysis_of(robot: Robot, task: Task = "pose") -> Analysis:
     """The analysis of a robot for a task, made when it is first asked for."""
-    kept = _kept.setdefault(robot, {})
-    if task not in kept:
-        kept[task] = analyse(chain_of(robot), task)
-    return kept[task]
+    return _analysis(robot, task)
+
+
+@fact
+def _analysis(robot: Robot, task: Task) -> Analysis:
+    return analyse(chain_of(robot), task)
 
 
 def analyse(chain: Chain, task: Task = "pose") -> Analysis:
@@ -117,7 +116,7 @@ def analyse(chain: Chain, task: Task = "pose") -> Analysis:
     idle = idle_joints(whole, open_joints, size)
     if idle:
         whole, open_joints = with_open_joints(chain, task, roll_first=True)
-    solved = without(whole, idle)
+    solved = with_joints_at(whole, dict.fromkeys(idle, 0.0))
     told = whole, open_joints, size, idle, solved
     windows = _windows(solved, size)
     for window in windows:
@@ -151,16 +150,7 @@ def with_open_joints(chain: Chain, task: Task, roll_first: bool = False) -> tupl
     With the roll first it may stand for an idle last joint, which turns about the same axis in many arms.
     """
     axes = {"pose": (), "approach": (2,), "position": (2, 1, 0) if roll_first else (0, 1, 2)}[task]
-    if not axes:
-        return chain, 0
-    frames = [z_to(np.eye(3)[axis]) for axis in axes]
-    constants = [*chain.constants[:-1], chain.constants[-1] @ frames[0]]
-    for before, after in pairwise(frames):
-        constants.append(before.T @ after)
-    constants.append(frames[-1].T)
-    turning = np.concatenate([chain.revolute, np.ones(len(axes), dtype=bool)])
-    offsets = np.concatenate([chain.offsets, np.zeros(len(axes))])
-    return Chain(np.stack(constants), turning, offsets), len(axes)
+    return with_joints(chain, axes, [True] * len(axes)), len(axes)
 
 
 def idle_joints(chain: Chain, open_joints: int, size: float) -> tuple[int, ...]:
@@ -176,23 +166,6 @@ def idle_joints(chain: Chain, open_joints: int, size: float) -> tuple[int, ...]:
     basis = np.linalg.qr(J[:, :, own:])[0]
     rest = J[:, :, :own] - basis @ (np.swapaxes(basis, 1, 2) @ J[:, :, :own])
     return tuple(int(i) for i in np.flatnonzero(np.max(np.linalg.norm(rest, axis=1), axis=0) < RANK))
-
-
-def without(chain: Chain, idle: tuple[int, ...]) -> Chain:
-    """The chain with some joints fixed at zero."""
-    if not idle:
-        return chain
-    constants = [chain.constants[0]]
-    for i in range(chain.n):
-        if i in idle:
-            offset = float(chain.offsets[i])
-            turned = rotation_from_axis_angle([0.0, 0.0, 1.0], offset if chain.revolute[i] else 0.0)
-            standing = transform(turned, np.array([0.0, 0.0, 0.0 if chain.revolute[i] else offset]))
-            constants[-1] = exact(constants[-1] @ standing @ chain.constants[i + 1])
-        else:
-            constants.append(chain.constants[i + 1])
-    rest = [i for i in range(chain.n) if i not in idle]
-    return Chain(np.stack(constants), chain.revolute[rest], chain.offsets[rest])
 
 
 def window_chain(chain: Chain, window: Window) -> Chain:
@@ -287,7 +260,7 @@ def _named(solver: Any, six: Padded, whole: Chain, part: Chain, own: int) -> tup
 def _directions(part: Chain) -> list[int]:
     """A number for each axis's direction, the same for parallel ones, at a generic configuration."""
     q = np.random.default_rng(3).uniform(-1.0, 1.0, (1, part.n))
-    z = joint_frames_of(part, q)[0, :-1, :3, 2]
+    z = frames(part, q)[0, :-1, :3, 2]
     parallel = np.linalg.norm(np.cross(z[:, None], z[None]), axis=2) < RANK
     return [int(np.argmax(row)) for row in parallel]
 
@@ -309,7 +282,7 @@ def chain_pose_parts(chain: Chain, window: Window, held: Array) -> tuple[Array, 
     """
     q = held.copy()
     q[:, window.first : window.last] = 0.0
-    F = joint_frames_of(chain, q)
+    F = frames(chain, q)
     before = F[:, window.first] if window.first else np.broadcast_to(np.eye(4), (len(q), 4, 4))
     if window.last == chain.n:
         return before, np.broadcast_to(np.eye(4), (len(q), 4, 4))
@@ -319,5 +292,5 @@ def chain_pose_parts(chain: Chain, window: Window, held: Array) -> tuple[Array, 
         chain.revolute[window.last :],
         chain.offsets[window.last :],
     )
-    after = joint_frames_of(tail, held[:, window.last :])[:, -1]
+    after = pose(tail, held[:, window.last :])
     return before, after

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Literal
 
@@ -11,12 +10,13 @@ import numpy as np
 from robokin.arrays import Array, Index
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.numeric.least_squares import descend
-from robokin.inverse.numeric.pose_error import pose_error
 from robokin.inverse.self_motion.nearest_member import nearest_on
 from robokin.inverse.self_motion.solution_sets import families
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import CLOSES
-from robokin.kernel.chain import Chain
+from robokin.kernel.damped_newton import brought_down, limited
+from robokin.kernel.frames import pose
+from robokin.kernel.residual import error_and_jacobian
 from robokin.model import Robot
 
 NEAR = 0.1
@@ -151,7 +151,7 @@ class Follower:
         if opened:
             # What is left open turns from where the tool is: its rotation is the target's.
             T = T.copy()
-            T[:3, :3] = one_jacobian(chain, x, size)[0][:3, :3]
+            T[:3, :3] = pose(chain, x)[:3, :3]
         found = self.steps(np.concatenate([q + ahead, np.zeros(opened)]), T[None])
         if found is not None and (self.robot.within_limits(found[: len(q)]) or not self.robot.within_limits(q)):
             return found[: len(q)]
@@ -166,37 +166,22 @@ class Follower:
         """Joint values (k,) that Newton's steps of least motion lead to from x (k,); None where they do not close."""
         chain, size = self.analysis.chain, self.analysis.size
         scale = np.where(chain.revolute, 1.0, size)
-        for _ in range(STEPS):
-            F, A = one_jacobian(chain, x, size)
-            error = pose_error(T, F[None], size)[0]
-            off = float(np.max(np.abs(error)))
-            if off <= 0.1 * CLOSES:
-                return x
+        endless = np.full(chain.n, np.inf)
+
+        def errors(_: Index, x: Array) -> tuple[Array, Array]:
+            return error_and_jacobian(chain, T, x * scale, size)
+
+        def step(_: Index, x: Array, e: Array, J: Array) -> Array:
             # The damping is far below what regular configurations notice, and keeps singular ones finite.
-            dx = A.T @ np.linalg.solve(A @ A.T + DAMPING * (off * off + 1e-9) * np.eye(6), error)
-            x = x + dx * min(1.0, LONGEST / max(float(np.max(np.abs(dx))), LONGEST)) * scale
-        return None
+            damping = DAMPING * (np.max(e * e) + 1e-9) * np.eye(6)
+            A = J[0]
+            return limited((A.T @ np.linalg.solve(A @ A.T + damping, e[0]))[None], LONGEST)
+
+        ends, e = brought_down(
+            errors, step, (x / scale)[None], -endless, endless, steps=STEPS, arrived=(0.1 * CLOSES) ** 2
+        )
+        return ends[0] * scale if np.max(np.abs(e)) <= 0.1 * CLOSES else None
 
     def move(self, q: Array, other: Array) -> float:
         """The greatest joint move between two configurations [rad | size]."""
         return float(np.max(np.abs(other - q) / self.scale))
-
-
-def one_jacobian(chain: Chain, x: Array, size: float) -> tuple[Array, Array]:
-    """The last frame (4, 4) [m] and the Jacobian (6, k), lengths in sizes, at one configuration x: (k,) [rad | m].
-
-    Poses that are needed one after the other do not gain from kinematics in columns: this takes a tenth of the time.
-    """
-    T = chain.constants[0].copy()
-    z, o = np.empty((chain.n, 3)), np.empty((chain.n, 3))
-    for i, value in enumerate((x + chain.offsets).tolist()):
-        z[i], o[i] = T[:3, 2], T[:3, 3]
-        if chain.revolute[i]:
-            c, s = math.cos(value), math.sin(value)
-            T[:, :2] = T[:, :2] @ np.array([[c, -s], [s, c]])
-        else:
-            T[:, 3] += value * T[:, 2]
-        T = T @ chain.constants[i + 1]
-    turns = chain.revolute[:, None]
-    linear = np.where(turns, np.cross(z, T[:3, 3] - o) / size, z)
-    return T, np.concatenate([linear, np.where(turns, z, 0.0)], axis=1).T

@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -24,15 +23,14 @@ from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.solution_names import branch_names
 from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution
-from robokin.model import Joint, JointType, Robot
-from robokin.model.robot import LIMIT_TOLERANCE, row_constants
-from robokin.spatial import rotation_transform
+from robokin.kernel.chain import row_standing
+from robokin.kernel.facts import fact
+from robokin.model import Robot
+from robokin.model.robot import LIMIT_TOLERANCE
 
 KEPT = 16
 """Arms with joints held that are kept for one robot: enough for a few values in turn; a sweep over many values must
 not fill the memory."""
-
-_kept: WeakKeyDictionary[Robot, OrderedDict[tuple[tuple[int, float], ...], HeldArm]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +70,7 @@ def held_arm(robot: Robot, hold: Mapping[int, float]) -> HeldArm:
     Raises InputError for joints that the robot does not have, values that are no numbers, and when nothing is left.
     """
     checked = tuple(sorted(_checked(robot, hold).items()))
-    kept = _kept.setdefault(robot, OrderedDict())
+    kept = _held_arms(robot)
     if checked in kept:
         kept.move_to_end(checked)
         return kept[checked]
@@ -80,6 +78,12 @@ def held_arm(robot: Robot, hold: Mapping[int, float]) -> HeldArm:
     if len(kept) > KEPT:
         kept.popitem(last=False)
     return arm
+
+
+@fact
+def _held_arms(robot: Robot) -> OrderedDict[tuple[tuple[int, float], ...], HeldArm]:
+    """The arms that were last asked for, none at first, by the joints and their values."""
+    return OrderedDict()
 
 
 def check_held_limits(robot: Robot, arm: HeldArm) -> None:
@@ -147,7 +151,7 @@ def _held(robot: Robot, hold: dict[int, float]) -> HeldArm:
     rows, number = [], 0
     for row in robot.rows:
         if row.moves:
-            rows.append(_standing(row, hold[number], robot.convention) if number in hold else row)
+            rows.append(row_standing(row, hold[number], robot.convention) if number in hold else row)
             number += 1
         else:
             rows.append(row)
@@ -157,19 +161,6 @@ def _held(robot: Robot, hold: dict[int, float]) -> HeldArm:
     free = np.setdiff1d(np.arange(robot.n), joints).astype(np.intp)
     inside = all(held_inside(robot, joint, value) for joint, value in hold.items())
     return HeldArm(robot.n, joints, np.array(list(hold.values())), inside, part, free)
-
-
-def _standing(row: Joint, value: float, convention: str) -> Joint:
-    """A row as a fixed one, its joint standing at a value [rad | m]."""
-    moved = row.offset + row.sense * value
-    turns = row.type is JointType.REVOLUTE
-    fixed = replace(row, type=JointType.FIXED, offset=0.0, limits=(-np.inf, np.inf), texts=(), sense=1)
-    if convention != "frames":
-        return replace(fixed, theta=row.theta + moved) if turns else replace(fixed, d=row.d + moved)
-    before, after = row_constants(replace(row, sense=1), convention)
-    motion = rotation_transform([0.0, 0.0, 1.0], moved) if turns else np.eye(4)
-    motion[2, 3] += 0.0 if turns else moved
-    return replace(fixed, origin=before @ motion @ after, axis=None)
 
 
 def _whole_result(arm: HeldArm, result: Result, named: Robot | None) -> Result:

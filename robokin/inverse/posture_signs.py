@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.inverse.joint_axes import Axes, dot
+from robokin.kernel.joint_axes import Axes, dot
 
 Quantity = Callable[[Axes], Array]
 Point = Callable[[Axes], Array]

@@ -42,7 +42,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.inverse.joint_axes import NEARLY, Axes, dot
 from robokin.inverse.posture_signs import (
     UNDECIDED,
     Point,
@@ -58,6 +57,7 @@ from robokin.inverse.posture_signs import (
     turn_of,
 )
 from robokin.kernel.chain import Chain, chain_size
+from robokin.kernel.joint_axes import NEARLY, Axes, dot
 
 UPRIGHT = 0.05
 """A reach in the arm's size that is none: the arm stands upright. Calibration moves it by less than a hundredth."""

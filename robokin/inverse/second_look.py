@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from functools import partial
 from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -33,10 +32,12 @@ from robokin.inverse.elimination.skew import Skew
 from robokin.inverse.elimination.splits import REAL, count_solutions
 from robokin.inverse.elimination.starts_close_by import CloseBy
 from robokin.inverse.numeric.least_squares import descend
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.self_motion.more_motions import listed_with_more
 from robokin.inverse.verify import CLOSES, Found, distinct, merged
 from robokin.kernel.chain import Chain
+from robokin.kernel.damped_newton import limited
+from robokin.kernel.facts import fact
+from robokin.kernel.residual import error_and_jacobian
 
 FINE = 6
 """Steps by singular values thereafter: next to singular poses normal equations lose half of the digits."""
@@ -140,28 +141,21 @@ class _Others(NamedTuple):
     chain: Chain
 
 
-_kept: WeakKeyDictionary[Analysis, _Others] = WeakKeyDictionary()
-
-
+@fact
 def _others_of(analysis: Analysis) -> _Others:
     """The other ways to solve an arm, made when they are first asked for."""
-    if analysis not in _kept:
-        assert analysis.six is not None
-        assert analysis.loop is not None
-        if analysis.six.virtual:
-            skews = tuple(Skew(analysis.own, seed) for seed in (40, 41))
-            first = skews[0]
-            beside = CloseBy(first.loop, first.solver, first.number)
-            homotopy = Homotopy(first.loop, partial(known_of_skew, first), beside)
-            _kept[analysis] = _Others(skews, homotopy, first.loop, first.six.chain)
-        else:
-            # Nothing kept here may hold on to the analysis, which it is kept for.
-            solver = analysis.solver
-            known = partial(known_solutions, analysis.loop, solver, analysis.number)
-            beside = CloseBy(analysis.loop, solver.first if isinstance(solver, General) else solver, analysis.number)
-            homotopy = Homotopy(analysis.loop, known, beside)
-            _kept[analysis] = _Others((), homotopy, analysis.loop, analysis.six.chain)
-    return _kept[analysis]
+    assert analysis.six is not None
+    assert analysis.loop is not None
+    if analysis.six.virtual:
+        skews = tuple(Skew(analysis.own, seed) for seed in (40, 41))
+        first = skews[0]
+        beside = CloseBy(first.loop, first.solver, first.number)
+        homotopy = Homotopy(first.loop, partial(known_of_skew, first), beside)
+        return _Others(skews, homotopy, first.loop, first.six.chain)
+    solver = analysis.solver
+    known = partial(known_solutions, analysis.loop, solver, analysis.number)
+    beside = CloseBy(analysis.loop, solver.first if isinstance(solver, General) else solver, analysis.number)
+    return _Others((), Homotopy(analysis.loop, known, beside), analysis.loop, analysis.six.chain)
 
 
 def wished(analysis: Analysis, T: Array, near: Array) -> tuple[Index, Array]:
@@ -275,8 +269,7 @@ def closing_at_last(chain: Chain, T: Array, index: Index, q: Array, size: float)
         part = np.einsum("sij,si->sj", U, here)
         part = np.where(LEAST * S[:, :1] < S, part / np.where(S > 0.0, S, 1.0), 0.0)
         step = np.einsum("sj,sjk->sk", part, Vt)
-        step *= (0.1 / np.maximum(np.max(np.abs(step), axis=1), 0.1))[:, None]
-        ahead = q[open_] + step * scale
+        ahead = q[open_] + limited(step, 0.1) * scale
         there, _ = error_and_jacobian(chain, T[index[open_]], ahead, size)
         better = np.max(np.abs(there), axis=1) < np.max(np.abs(here), axis=1)
         q[open_[better]], error[open_[better]] = ahead[better], there[better]

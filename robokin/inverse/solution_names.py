@@ -21,7 +21,6 @@ listed for different values of those, two may have one name.
 from __future__ import annotations
 
 from dataclasses import replace
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -30,12 +29,11 @@ from robokin.inverse.analysis import Window, analysis_of, window_chain
 from robokin.inverse.postures import Postures, postures_of
 from robokin.inverse.verify import SAME, wrapped
 from robokin.kernel.chain import chain_of
+from robokin.kernel.facts import fact
 from robokin.model import Robot
 
 HELD = 1e-6
 """Held joints that differ by less [rad | size] have one value."""
-
-_kept: WeakKeyDictionary[Robot, tuple[Window, Postures]] = WeakKeyDictionary()
 
 
 def branch_names(robot: Robot, q: Array, index: Index | None = None) -> list[str]:
@@ -86,18 +84,15 @@ def listed_names(robot: Robot, q: Array, index: Index, every: tuple[Array, Index
     return [names[row] for row in best.tolist()]
 
 
+@fact
 def _postures(robot: Robot) -> tuple[Window, Postures]:
-    kept = _kept.get(robot)
-    if kept is None:
-        analysis = analysis_of(robot)
-        window = analysis.window
-        if window.last - window.first > 6:
-            window = Window(0, 0, window.dimension)
-        # Up is up whichever way a variable counts: the axes are those of the table.
-        plain = replace(robot, rows=tuple(replace(row, sense=1) for row in robot.rows))
-        chain = chain_of(robot if np.all(robot.senses > 0.0) else plain)
-        kept = _kept[robot] = window, postures_of(window_chain(chain, window))
-    return kept
+    window = analysis_of(robot).window
+    if window.last - window.first > 6:
+        window = Window(0, 0, window.dimension)
+    # Up is up whichever way a variable counts: the axes are those of the table.
+    plain = replace(robot, rows=tuple(replace(row, sense=1) for row in robot.rows))
+    chain = chain_of(robot if np.all(robot.senses > 0.0) else plain)
+    return window, postures_of(window_chain(chain, window))
 
 
 def _numbers(robot: Robot, q: Array, index: Index, code: Index, part: slice, postures: Postures) -> Index:

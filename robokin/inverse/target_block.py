@@ -16,7 +16,6 @@ from robokin.inverse.numeric.closest import TOGETHER, beyond_reach, nearest_conf
 from robokin.inverse.numeric.closing import closing_nearest
 from robokin.inverse.numeric.least_squares import descend
 from robokin.inverse.numeric.nearest import free_at, numeric_solutions
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.self_motion.arcs import arcs_of_each
 from robokin.inverse.self_motion.members import SelfMotion, listed_once
 from robokin.inverse.self_motion.onto_limits import onto_limits
@@ -26,6 +25,7 @@ from robokin.inverse.solution_names import branch_names, listed_names
 from robokin.inverse.solutions import Arc
 from robokin.inverse.solve_blocks import solve_block, turned_in_the_open
 from robokin.inverse.verify import CLOSES, Found, distinct, merged, nothing, with_ones_within, within_limits, wrapped
+from robokin.kernel.residual import error_and_jacobian
 from robokin.model import Robot
 from robokin.model.robot import tolerated
 from robokin.spatial.transforms import FARTHEST

@@ -14,7 +14,7 @@ from robokin.arrays import Array, Flags, Index
 from robokin.inverse.elimination.loop import Candidates, Loop
 from robokin.inverse.elimination.loop_newton import refine
 from robokin.kernel.chain import Chain
-from robokin.kernel.columns import BLOCK, ChainPlan, Constant
+from robokin.kernel.residual import TargetPoses
 from robokin.model.robot import tolerated
 
 CLOSES = 1e-9
@@ -84,37 +84,6 @@ def merged(a: Found, b: Found) -> Found:
         np.concatenate([a.position, b.position]),
         np.concatenate([a.angle, b.angle]),
     )
-
-
-class TargetPoses:
-    """Forward kinematics of a chain (base, joints, virtual joints, tool) against a block of targets."""
-
-    def __init__(self, chain: Chain, T: Array) -> None:
-        segments = [[Constant(C, mark=i == chain.n)] for i, C in enumerate(chain.constants)]
-        self.plan = ChainPlan(segments, chain.revolute, chain.offsets)
-        # The twelve entries of each target, column by column, as the plan gives them.
-        self.targets = np.ascontiguousarray(T[:, :3].transpose(2, 1, 0)).reshape(12, -1)
-
-    def residuals(self, index: Index, q: Array) -> tuple[Array, Array]:
-        """Distances (s,) [m] and angles (s,) [rad] of the poses at q (n, s) from the targets index (s,).
-
-        The angle comes from the chord |R_a - R_b| = 2 √2 sin(angle / 2), which keeps all digits of small
-        ones; up to 1e-8 it is chord / √2 to the last digit, and beyond that its size does not matter here.
-        """
-        position, angle = np.empty(len(index)), np.empty(len(index))
-        off = np.empty((12, min(BLOCK, len(index))))
-        for start in range(0, len(index), BLOCK):
-            part = slice(start, start + BLOCK)
-            block = off[:, : len(index[part])]
-            self.targets.take(index[part], axis=1, out=block, mode="clip")
-            (frame,) = self.plan.columns(q[:, part])
-            for row, entry in zip(block, (entry for column in frame for entry in column), strict=True):
-                row -= entry
-            block *= block
-            block[:9].sum(axis=0, out=angle[part])
-            block[9:].sum(axis=0, out=position[part])
-        angle *= 0.5
-        return np.sqrt(position, out=position), np.sqrt(angle, out=angle)
 
 
 def residuals(T: Array, found: Array) -> tuple[Array, Array]:

@@ -21,9 +21,9 @@ from robokin.inverse.elimination.loop_newton import determinants
 from robokin.inverse.elimination.splits import REAL
 from robokin.inverse.numeric.least_squares import descend
 from robokin.inverse.numeric.nearest import SINGULAR as ON_CURVE
-from robokin.inverse.numeric.pose_error import error_and_jacobian
-from robokin.inverse.verify import CLOSES, VIRTUAL, Found, TargetPoses, closing_distances, distinct, verified
+from robokin.inverse.verify import CLOSES, VIRTUAL, Found, closing_distances, distinct, verified
 from robokin.kernel.chain import Chain
+from robokin.kernel.residual import TargetPoses, error_and_jacobian
 
 SINGULAR = 5e-6
 """Least singular value of the Jacobian (lengths in sizes) of a closed form's solution below which others may be lost:

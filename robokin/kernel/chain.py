@@ -12,17 +12,19 @@ metres away, and lengths of 0.1 m would be differences of such numbers.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from weakref import WeakKeyDictionary
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 
 from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.kernel.arm_size import axis_path
-from robokin.model import Robot
+from robokin.kernel.facts import fact
+from robokin.model import Joint, JointType, Robot
 from robokin.model.robot import row_constants
-from robokin.spatial import exact, invert
+from robokin.spatial import exact, invert, rotation_transform, translation_transform, z_to
 
 FAR = 2.0
 """Frames that are farther from each other, in the arm's size and added up, than this are moved along their axes to the
@@ -48,29 +50,24 @@ class Chain(Brief):
         return len(self.revolute)
 
 
-_chains: WeakKeyDictionary[Robot, Chain] = WeakKeyDictionary()
-
-
+@fact
 def chain_of(robot: Robot) -> Chain:
-    """The chain of a robot: base, rows and tool, constants between two joints multiplied out. Kept."""
-    chain = _chains.get(robot)
-    if chain is None:
-        constants = [robot.base]
-        for row in robot.rows:
-            before, after = row_constants(row, robot.convention)
-            constants[-1] = constants[-1] @ before
-            if row.moves:
-                constants.append(after)
-            else:
-                constants[-1] = constants[-1] @ after
-        constants[-1] = constants[-1] @ robot.tool
-        offsets = np.array([joint.offset for joint in robot.joints]) * robot.senses + 0.0  # no negative zeros
-        start = (invert(constants[0]) @ robot.base)[:3, 3]
-        chain = Chain(np.stack([exact(C) for C in constants]), robot.revolute, offsets, start)
-        chain = _chains[robot] = near_the_arm(chain)
-    return chain
+    """The chain of a robot: base, rows and tool, constants between two joints multiplied out."""
+    constants = [robot.base]
+    for row in robot.rows:
+        before, after = row_constants(row, robot.convention)
+        constants[-1] = constants[-1] @ before
+        if row.moves:
+            constants.append(after)
+        else:
+            constants[-1] = constants[-1] @ after
+    constants[-1] = constants[-1] @ robot.tool
+    offsets = np.array([joint.offset for joint in robot.joints]) * robot.senses + 0.0  # no negative zeros
+    start = (invert(constants[0]) @ robot.base)[:3, 3]
+    return near_the_arm(Chain(np.stack([exact(C) for C in constants]), robot.revolute, offsets, start))
 
 
+@fact
 def chain_size(chain: Chain) -> float:
     """The arm's size [m]: the lengths along and between its axes (see `arm_size`), or 1 where there are none."""
     return axis_path(chain.constants, chain.revolute, chain.offsets, chain.start)[0]
@@ -94,3 +91,54 @@ def near_the_arm(chain: Chain) -> Chain:
         if i == 0:
             start -= shift
     return Chain(constants, chain.revolute, chain.offsets, start)
+
+
+def with_joints_at(chain: Chain, values: Mapping[int, float]) -> Chain:
+    """The chain with some joints (from 0) standing at values [rad | m]: its joints are the others."""
+    if not values:
+        return chain
+    constants = [chain.constants[0]]
+    for i, C in enumerate(chain.constants[1:]):
+        if i in values:
+            at = _standing(bool(chain.revolute[i]), values[i] + float(chain.offsets[i]))
+            constants[-1] = exact(constants[-1] @ at @ C)
+        else:
+            constants.append(C)
+    rest = [i for i in range(chain.n) if i not in values]
+    return Chain(np.stack(constants), chain.revolute[rest], chain.offsets[rest])
+
+
+def with_joints(chain: Chain, axes: Sequence[int], revolute: Sequence[bool], G: Array | None = None) -> Chain:
+    """The chain with joints after its own, about or along axes (0 to 2 for x, y, z) of the frame G (4, 4) in the tool.
+
+    G is the tool's own frame if it is not given. The chain's tool is moved by the new joints.
+    """
+    if not axes:
+        return chain
+    start = np.eye(4) if G is None else G
+    turned = [start @ z_to(np.eye(3)[axis]) for axis in axes]
+    constants = [*chain.constants[:-1], chain.constants[-1] @ turned[0]]
+    constants += [invert(before) @ after for before, after in pairwise(turned)]
+    constants.append(invert(turned[-1]))
+    return Chain(
+        np.stack([exact(C) for C in constants]),
+        np.concatenate([chain.revolute, np.array(revolute, dtype=bool)]),
+        np.concatenate([chain.offsets, np.zeros(len(axes))]),
+    )
+
+
+def row_standing(row: Joint, value: float, convention: str) -> Joint:
+    """A row as a fixed one, its joint standing at a value [rad | m]."""
+    moved = row.offset + row.sense * value
+    turns = row.type is JointType.REVOLUTE
+    fixed = replace(row, type=JointType.FIXED, offset=0.0, limits=(-np.inf, np.inf), texts=(), sense=1)
+    if convention != "frames":
+        return replace(fixed, theta=row.theta + moved) if turns else replace(fixed, d=row.d + moved)
+    before, after = row_constants(replace(row, sense=1), convention)
+    return replace(fixed, origin=before @ _standing(turns, moved) @ after, axis=None)
+
+
+def _standing(turns: bool, at: float) -> Array:
+    """J (4, 4) of a joint that stands at a value [rad | m], exact at right angles."""
+    z = np.array([0.0, 0.0, 1.0])
+    return rotation_transform(z, at) if turns else translation_transform(at * z)

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array, Flags
+from robokin.kernel.entries import Entry, increased, plus, times, turned, turned_back
 
-Entry = Array | float
 Column = list[Entry]
 
 BLOCK = 4096
@@ -38,7 +38,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class _Turn:
-    """A revolute joint of a plan."""
+    """A revolute joint of a program."""
 
     starts_run: bool  # x and y before it are what the sum of the run's angles turns
     need_x: bool  # whether anything asks for the turned x, y before the run goes on
@@ -47,14 +47,14 @@ class _Turn:
 
 @dataclass(frozen=True)
 class _Shift:
-    """A constant of a plan: translation, then the rotation's columns (None: no rotation), then the mark."""
+    """A constant of a program: translation, then the rotation's columns (None: no rotation), then the mark."""
 
     translation: tuple[float, float, float]
     rotation: tuple[tuple[float, float, float], ...] | None
     mark: bool
 
 
-class ChainPlan:
+class ChainProgram:
     """What to do with a block of joint values, decided once for a chain.
 
     `segments` holds, for each of the n + 1 places between the joints, the constants to apply in turn;
@@ -123,20 +123,20 @@ class ChainPlan:
             if i:
                 turn = self.turns[i - 1]
                 if turn is None:
-                    p = [_sum(_times(values[i - 1], v), u) for u, v in zip(p, z, strict=True)]
+                    p = [plus(times(values[i - 1], v), u) for u, v in zip(p, z, strict=True)]
                 else:
                     if turn.starts_run:
                         run_x, run_y = x, y
                     row = next(rows)
                     c, s = cosines[row], sines[row]
                     if turn.need_x:
-                        x = [_turned(c, u, s, v) for u, v in zip(run_x, run_y, strict=True)]
+                        x = [turned(c, u, s, v) for u, v in zip(run_x, run_y, strict=True)]
                     if turn.need_y:
-                        y = [_turned_back(c, v, s, u) for u, v in zip(run_x, run_y, strict=True)]
+                        y = [turned_back(c, v, s, u) for u, v in zip(run_x, run_y, strict=True)]
             for shift in shifts:
                 for factor, column in zip(shift.translation, (x, y, z), strict=True):
                     if factor:
-                        p = [_sum(_scaled(factor, v), u) for u, v in zip(p, column, strict=True)]
+                        p = [increased(u, factor, v) for u, v in zip(p, column, strict=True)]
                 if shift.rotation is not None:
                     x, y, z = (_mixture(weights, x, y, z) for weights in shift.rotation)
                 if shift.mark:
@@ -171,52 +171,5 @@ def _mixture(weights: tuple[float, float, float], x: Column, y: Column, z: Colum
     mixed: Column = [0.0, 0.0, 0.0]
     for weight, column in zip(weights, (x, y, z), strict=True):
         if weight:
-            mixed = [_sum(_scaled(weight, v), u) for u, v in zip(mixed, column, strict=True)]
+            mixed = [increased(u, weight, v) for u, v in zip(mixed, column, strict=True)]
     return mixed
-
-
-# Arithmetic on entries. What _times and _scaled return may be an entry of the frame before it, so the
-# sums reuse their first argument's memory only where it must be a product made for them.
-
-
-def _times(array: Array, entry: Entry) -> Entry:
-    """array · entry, without the multiplication where the entry is 0 or 1."""
-    if isinstance(entry, float):
-        if entry == 0.0:
-            return 0.0
-        if entry == 1.0:
-            return array
-    return array * entry
-
-
-def _scaled(number: float, entry: Entry) -> Entry:
-    """number · entry, without the multiplication where the number is 1."""
-    return entry if number == 1.0 else number * entry
-
-
-def _sum(a: Entry, b: Entry) -> Entry:
-    if isinstance(a, float) and a == 0.0:
-        return b
-    if isinstance(b, float) and b == 0.0:
-        return a
-    return a + b
-
-
-def _turned(c: Array, u: Entry, s: Array, v: Entry) -> Entry:
-    """c u + s v."""
-    if isinstance(u, float) or isinstance(v, float):
-        return _sum(_times(c, u), _times(s, v))
-    turned = c * u
-    turned += s * v
-    return turned
-
-
-def _turned_back(c: Array, u: Entry, s: Array, v: Entry) -> Entry:
-    """c u - s v."""
-    if isinstance(v, float):
-        return _sum(_times(c, u), _times(s, -v))
-    if isinstance(u, float):
-        return _sum(_times(c, u), -(s * v))
-    turned = c * u
-    turned -= s * v
-    return turned

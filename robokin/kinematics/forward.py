@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from weakref import WeakKeyDictionary
-
-import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.expected import expect_numbers
 from robokin.kernel.chain import chain_of
-from robokin.kernel.columns import BLOCK, ChainPlan, Constant
+from robokin.kernel.columns import ChainProgram, Constant
+from robokin.kernel.facts import fact
+from robokin.kernel.frames import frames, pose, run
 from robokin.model import Robot, expect_robot
 from robokin.spatial import exact
 
@@ -23,7 +21,8 @@ def forward_kinematics(robot: Robot, q: ArrayLike) -> Array:
     q: (..., n) joint values in file order [rad | m]. Returns (..., 4, 4) [m].
     NaN in a row of q gives NaN in its pose. Raises InputError when q has another length than n.
     """
-    return _frames(robot, q, "pose")[..., 0, :, :]
+    q = joint_values(robot, q)
+    return pose(chain_of(robot), q)
 
 
 def link_frames(robot: Robot, q: ArrayLike) -> Array:
@@ -33,7 +32,8 @@ def link_frames(robot: Robot, q: ArrayLike) -> Array:
     base's, frame k the one that the row of joint k leads to. Fixed rows extend the link that they
     follow, so that `link_frames(robot, q)[..., -1, :, :] @ robot.tool` is the tool's pose.
     """
-    return _frames(robot, q, "links")
+    q = joint_values(robot, q)
+    return run(_row_program(robot, False), q)
 
 
 def row_frames(robot: Robot, q: ArrayLike) -> Array:
@@ -41,7 +41,8 @@ def row_frames(robot: Robot, q: ArrayLike) -> Array:
 
     q: (..., n) joint values in file order [rad | m]. Returns (..., rows, 4, 4) [m].
     """
-    return _frames(robot, q, "rows")
+    q = joint_values(robot, q)
+    return run(_row_program(robot, True), q)
 
 
 def joint_frames(robot: Robot, q: ArrayLike) -> Array:
@@ -49,17 +50,8 @@ def joint_frames(robot: Robot, q: ArrayLike) -> Array:
 
     q: (..., n) joint values in file order [rad | m]. Returns (..., n + 1, 4, 4) [m].
     """
-    return _frames(robot, q, "joints")
-
-
-def _frames(robot: Robot, q: ArrayLike, which: str) -> Array:
     q = joint_values(robot, q)
-    plan = _plan(robot, which)
-    rows = q.reshape(math.prod(q.shape[:-1]), robot.n)
-    out = np.empty((len(rows), plan.marks, 4, 4))
-    for start in range(0, len(rows), BLOCK):
-        plan.frames(rows[start : start + BLOCK], out[start : start + BLOCK])
-    return out.reshape(*q.shape[:-1], plan.marks, 4, 4)
+    return frames(chain_of(robot), q)
 
 
 def joint_values(robot: Robot, q: ArrayLike) -> Array:
@@ -75,29 +67,9 @@ def joint_values(robot: Robot, q: ArrayLike) -> Array:
     return q
 
 
-_plans: WeakKeyDictionary[Robot, dict[str, ChainPlan]] = WeakKeyDictionary()
-
-
-def _plan(robot: Robot, which: str) -> ChainPlan:
-    kept = _plans.setdefault(robot, {})
-    if which not in kept:
-        chain = chain_of(robot)
-        segments = {"pose": _pose_segments, "joints": _joint_segments}.get(which)
-        marked = segments(chain.constants) if segments else _row_segments(robot, which == "rows")
-        kept[which] = ChainPlan(marked, chain.revolute, chain.offsets)
-    return kept[which]
-
-
-def _pose_segments(constants: Array) -> list[list[Constant]]:
-    return [[Constant(C, mark=i == len(constants) - 1)] for i, C in enumerate(constants)]
-
-
-def _joint_segments(constants: Array) -> list[list[Constant]]:
-    return [[Constant(C, mark=True)] for C in constants]
-
-
-def _row_segments(robot: Robot, every_row: bool) -> list[list[Constant]]:
-    """The constants row by row; a mark after every row, or only after the last row of each link."""
+@fact
+def _row_program(robot: Robot, every_row: bool) -> ChainProgram:
+    """The way row by row; a mark after every row, or only after the last row of each link."""
     segments = [[Constant(robot.base, mark=not every_row)]]
     for joint in robot.graph.joints:
         segments[-1].append(Constant(joint.before))
@@ -107,4 +79,5 @@ def _row_segments(robot: Robot, every_row: bool) -> list[list[Constant]]:
             if not every_row:
                 segments[-1] = [Constant(part.matrix) for part in segments[-1]]
             segments[-1].append(Constant(joint.after, mark=True))
-    return segments
+    chain = chain_of(robot)
+    return ChainProgram(segments, chain.revolute, chain.offsets)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
 from robokin.expected import expect_choice
-from robokin.kinematics.forward import joint_frames
+from robokin.kernel.chain import chain_of
+from robokin.kernel.geometric_jacobian import jacobian as chain_jacobian
+from robokin.kinematics.forward import joint_values
 from robokin.model import Robot
 
 
@@ -22,12 +23,5 @@ def jacobian(robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base"
     Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, eq. (3.30).
     """
     expect_choice(frame, ("base", "tool"), "frame")
-    F = joint_frames(robot, q)
-    z, o = F[..., :-1, :3, 2], F[..., :-1, :3, 3]
-    R, p = F[..., -1, :3, :3], F[..., -1, None, :3, 3]
-    turns = robot.revolute[:, None]
-    linear = np.where(turns, np.cross(z, p - o), z)
-    angular = np.where(turns, z, 0.0)
-    if frame == "tool":
-        linear, angular = linear @ R, angular @ R
-    return np.swapaxes(np.concatenate([linear, angular], axis=-1), -1, -2)
+    q = joint_values(robot, q)
+    return chain_jacobian(chain_of(robot), q, frame)

@@ -14,12 +14,12 @@ an arm without a wrist:
 from __future__ import annotations
 
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from robokin.arrays import Array
 from robokin.brief import Brief
+from robokin.kernel.facts import fact
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.singular_equation import Equation, equation_of, exact_angle, lateral, reference_point
 from robokin.kinematics.singular_search import HOLDS, Condition, Search
@@ -55,9 +55,6 @@ class Singularity(Brief):
     lost: tuple[Lost, ...]
 
 
-_kept: WeakKeyDictionary[Robot, dict[str | None, tuple[Singularity, ...]]] = WeakKeyDictionary()
-
-
 def singular_configurations(robot: Robot, task: TaskName | None = None) -> tuple[Singularity, ...]:
     """The conditions on the joints under which an arm loses a freedom that it has in general.
 
@@ -65,14 +62,15 @@ def singular_configurations(robot: Robot, task: TaskName | None = None) -> tuple
     missed; what is listed is tested at random values of the joints that it leaves free. `task` is what counts of the
     tool's twist, as in `differential_kinematics`. Raises InputError for a robot without joints.
     """
-    kind = motion_task(robot, task)
-    kept = _kept.setdefault(robot, {})
-    if task not in kept:
-        search = Search(robot, kind)
-        found = [_named(robot, kind, search, condition) for condition in search.conditions()]
-        order = ["shoulder", "elbow", "boundary", "wrist", "general"]
-        kept[task] = tuple(sorted(found, key=lambda one: (order.index(one.name), one.joints)))
-    return kept[task]
+    return _found(robot, motion_task(robot, task))
+
+
+@fact
+def _found(robot: Robot, task: MotionTask) -> tuple[Singularity, ...]:
+    search = Search(robot, task)
+    found = [_named(robot, task, search, condition) for condition in search.conditions()]
+    order = ["shoulder", "elbow", "boundary", "wrist", "general"]
+    return tuple(sorted(found, key=lambda one: (order.index(one.name), one.joints)))
 
 
 def _named(robot: Robot, task: MotionTask, search: Search, condition: Condition) -> Singularity:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array
+from robokin.kernel.joint_axes import nearest_point
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.velocity import wrist_centre
 from robokin.model import Robot
@@ -98,10 +99,7 @@ def reference_point(robot: Robot, frames: Array) -> Array:
     if robot.n < 5 or not robot.revolute[-2:].all():
         return np.asarray(frames[..., -1, :3, 3])
     z, o = frames[..., -3:-1, :3, 2], frames[..., -3:-1, :3, 3]
-    normal = np.cross(z[..., 0, :], z[..., 1, :])
-    square = np.sum(normal * normal, axis=-1)
-    along = np.sum(np.cross(o[..., 1, :] - o[..., 0, :], z[..., 1, :]) * normal, axis=-1) / np.maximum(square, 1e-300)
-    return np.asarray(o[..., 0, :] + along[..., None] * z[..., 0, :])
+    return nearest_point(z[..., 1, :], o[..., 1, :], z[..., 0, :], o[..., 0, :])
 
 
 def lateral(robot: Robot, q: Array) -> Array | None:

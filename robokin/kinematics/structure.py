@@ -12,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from robokin.kernel.chain import chain_of, chain_size
+from robokin.kernel.facts import fact
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
 from robokin.model import Robot
@@ -41,6 +42,7 @@ class Structure:
         return self.redundancy >= 0
 
 
+@fact
 def structure_of(robot: Robot) -> Structure:
     """The structure of a robot."""
     axes = _Axes(robot)

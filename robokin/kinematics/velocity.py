@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Literal, get_args
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +23,8 @@ from robokin.brief import Answer, Brief
 from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_finite
 from robokin.kernel.chain import chain_of, chain_size
+from robokin.kernel.facts import fact
+from robokin.kernel.joint_axes import nearest_point
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
 from robokin.kinematics.structure import structure_of
@@ -92,9 +93,6 @@ class Lost(Brief):
     words: str
 
 
-_tasks: WeakKeyDictionary[Robot, dict[str | None, MotionTask]] = WeakKeyDictionary()
-
-
 def motion_task(robot: Robot, name: TaskName | None = None) -> MotionTask:
     """What counts for an arm: the whole pose, the position or the orientation; by itself what the books take.
 
@@ -107,12 +105,10 @@ def motion_task(robot: Robot, name: TaskName | None = None) -> MotionTask:
         raise InputError(f"{robot.name} has no joints, expected a robot that can move")
     if name is not None:
         expect_choice(name, get_args(TaskName), "task")
-    kept = _tasks.setdefault(robot, {})
-    if name not in kept:
-        kept[name] = _task(robot, name)
-    return kept[name]
+    return _task(robot, name)
 
 
+@fact
 def _task(robot: Robot, name: TaskName | None) -> MotionTask:
     size = chain_size(chain_of(robot))
     # Arbitrary configurations: what holds at them but for chance holds nearly everywhere.
@@ -211,10 +207,7 @@ def wrist_centre(robot: Robot, frames: Array) -> Array | None:
         return None
     z, o = frames[..., -4:-1, :3, 2], frames[..., -4:-1, :3, 3]
     # The point nearest to the last two axes, which are never parallel in a wrist.
-    normal = np.cross(z[..., 1, :], z[..., 2, :])
-    between = np.cross(o[..., 2, :] - o[..., 1, :], z[..., 1, :])
-    along = np.sum(between * normal, axis=-1) / np.sum(normal * normal, axis=-1)
-    return np.asarray(o[..., 2, :] + along[..., None] * z[..., 2, :])
+    return nearest_point(z[..., 1, :], o[..., 1, :], z[..., 2, :], o[..., 2, :])
 
 
 def _lost(twist: Array, offsets: list[tuple[str, Array]], turn: Array, wrist: bool) -> Lost:

@@ -22,8 +22,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.mobility.screws import moved_screws
+from robokin.mobility.screws import moved_screws, skew
 from robokin.model.topology import topology_of
+from robokin.spatial import invert
 
 OUT_OF_PLANE = 1e-12
 """Parts of unit twists below this are rounding."""
@@ -104,7 +105,7 @@ class Chart:
             columns = range(self.first[number], self.first[number + 1])
             if not forward:
                 for j in reversed(columns):
-                    g = g @ _inverse(E[:, j])
+                    g = g @ invert(E[:, j])
                     carried[:, j] = g
             else:
                 for j in columns:
@@ -139,7 +140,7 @@ class Chart:
         there, back = (columns[:, None] * way[None, :, None, :] for way in (self._there, self._back))  # (N, l, 6, n)
         RG, tG = gaps[..., :3, :3], gaps[..., :3, 3]
         turned = there[:, :, 3:] - RG @ back[:, :, 3:]
-        moved = there[:, :, :3] - _skew(tG) @ there[:, :, 3:] - RG @ back[:, :, :3]
+        moved = there[:, :, :3] - skew(tG) @ there[:, :, 3:] - RG @ back[:, :, :3]
         turned = 0.5 * (np.trace(RG, axis1=2, axis2=3)[..., None, None] * turned - RG @ turned)
         J = np.concatenate([moved, turned], axis=2)[:, :, self._kept].reshape(N, -1, self.n)
         if len(self.rows):
@@ -150,7 +151,7 @@ class Chart:
         """The loops' gaps (N, l, 4, 4)."""
         gaps = np.empty((len(bodies), len(self.chords), 4, 4))
         for k, chord in enumerate(self.chords):
-            gaps[:, k] = self._ends[k] @ _inverse(bodies[:, self.ends[chord][1]])
+            gaps[:, k] = self._ends[k] @ invert(bodies[:, self.ends[chord][1]])
         return gaps
 
     def _lack(self, q: Array, gaps: Array) -> Array:
@@ -163,27 +164,9 @@ class Chart:
 def _powers(screws: Array) -> tuple[Array, Array, Array]:
     """The matrices S, S², S³ (n, 4, 4) of unit twists (n, 6)."""
     X = np.zeros((len(screws), 4, 4))
-    X[:, :3, :3] = _skew(screws[:, 3:])
+    X[:, :3, :3] = skew(screws[:, 3:])
     X[:, :3, 3] = screws[:, :3]
     return X, X @ X, X @ X @ X
-
-
-def _inverse(T: Array) -> Array:
-    """The inverses of rigid motions (N, 4, 4)."""
-    out = np.zeros_like(T)
-    Rt = T[..., :3, :3].swapaxes(-1, -2)
-    out[..., :3, :3] = Rt
-    out[..., :3, 3] = -(Rt @ T[..., :3, 3:])[..., 0]
-    out[..., 3, 3] = 1.0
-    return out
-
-
-def _skew(w: Array) -> Array:
-    """The matrices (…, 3, 3) of the cross product with vectors (…, 3)."""
-    W = np.zeros((*w.shape[:-1], 3, 3))
-    W[..., 0, 1], W[..., 0, 2], W[..., 1, 2] = -w[..., 2], w[..., 1], -w[..., 0]
-    W[..., 1, 0], W[..., 2, 0], W[..., 2, 1] = w[..., 2], -w[..., 1], w[..., 0]
-    return W
 
 
 def _cross(a: Array, b: Array) -> Array:

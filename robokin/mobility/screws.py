@@ -151,8 +151,8 @@ def logarithm(T: Array) -> Array:
 
 
 def skew(w: Array) -> Array:
-    """The matrices (m, 3, 3) of the cross product with vectors (m, 3)."""
-    W = np.zeros((len(w), 3, 3))
-    W[:, 0, 1], W[:, 0, 2], W[:, 1, 2] = -w[:, 2], w[:, 1], -w[:, 0]
-    W[:, 1, 0], W[:, 2, 0], W[:, 2, 1] = w[:, 2], -w[:, 1], w[:, 0]
+    """The matrices (..., 3, 3) of the cross product with vectors (..., 3)."""
+    W = np.zeros((*w.shape[:-1], 3, 3))
+    W[..., 0, 1], W[..., 0, 2], W[..., 1, 2] = -w[..., 2], w[..., 1], -w[..., 0]
+    W[..., 1, 0], W[..., 2, 0], W[..., 2, 1] = w[..., 2], -w[..., 1], w[..., 0]
     return W

@@ -13,6 +13,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.kernel.chain import chain_of
+from robokin.kernel.frames import joint_motion
 from robokin.kinematics.forward import joint_frames
 from robokin.model import Robot
 
@@ -92,17 +93,8 @@ def default_configuration(robot: Robot) -> tuple[Array, str]:
 def body_frames(robot: Robot, q: Array) -> Array:
     """(n + 1, 4, 4) [m] the frames of the bodies in the world at q: (n,) [rad | m]."""
     chain = chain_of(robot)
-    frames = [np.eye(4)]
-    starts = joint_frames(robot, q)
-    for i in range(robot.n):
-        moved = np.eye(4)
-        value = q[i] + chain.offsets[i]
-        if chain.revolute[i]:
-            moved[:2, :2] = [[np.cos(value), -np.sin(value)], [np.sin(value), np.cos(value)]]
-        else:
-            moved[2, 3] = value
-        frames.append(starts[i] @ moved)
-    return np.array(frames)
+    moves = zip(joint_frames(robot, q)[:-1], chain.revolute, q + chain.offsets, strict=True)
+    return np.array([np.eye(4), *(start @ joint_motion(bool(turns), value) for start, turns, value in moves)])
 
 
 def arm_of(robot: Robot) -> ArmShape:

@@ -19,7 +19,8 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.analysis import Task, analysis_of
-from robokin.inverse.elimination.padding import joint_frames_of
+from robokin.kernel.frames import frames, pose
+from robokin.kernel.geometric_jacobian import jacobian_of
 from robokin.spatial import rotation_from_axis_angle, rotation_from_quaternion
 from robokin.workspace.space import PROBES, RANK, Space
 
@@ -76,7 +77,7 @@ def attitudes(space: Space, group: Group, count: int, seed: int) -> Attitudes:
         J, _ = _probes(space)
         axis = _one_direction(J)
         assert axis is not None
-        own = joint_frames_of(space.chain, 0.5 * (space.low + space.high)[None])[0, -1, :3, :3]
+        own = pose(space.chain, 0.5 * (space.low + space.high))[:3, :3]
         angles = 2.0 * np.pi * (np.arange(count) + rng.random()) / count
         return Attitudes(group, rotation_from_axis_angle(axis, angles) @ own, "pose", 2.0 * np.pi / count, axis)
     turned = rotation_from_quaternion(_unit(rng.normal(size=4)))
@@ -129,13 +130,10 @@ def _probes(space: Space) -> tuple[Array, Array]:
     """Jacobians (p, 6, n), linear part in sizes, and the tool's z axis (p, 3) at arbitrary configurations."""
     # Values of no meaning: whatever holds at all of them holds everywhere.
     q = space.low + (space.high - space.low) * np.random.default_rng(12).random((PROBES, space.robot.n))
-    F = joint_frames_of(space.chain, q)
-    z, o, p = F[:, :-1, :3, 2], F[:, :-1, :3, 3], F[:, -1, None, :3, 3]
-    turns = space.robot.revolute[:, None]
-    linear = np.where(turns, np.cross(z, p - o) / space.size, z)
-    J = np.concatenate([linear, np.where(turns, z, 0.0)], axis=2)
-    J[:, space.held] = 0.0
-    return np.swapaxes(J, 1, 2), F[:, -1, :3, 2]
+    F = frames(space.chain, q)
+    J = jacobian_of(F, space.chain.revolute, size=space.size)
+    J[:, :, space.held] = 0.0
+    return J, F[:, -1, :3, 2]
 
 
 def _kernel_turns(J: Array, dimension: int) -> Array:

@@ -27,7 +27,8 @@ import numpy as np
 
 from robokin.arrays import Array, Flags
 from robokin.jobs.ordered_map import in_order
-from robokin.workspace.placing import Placing
+from robokin.kernel.frames import pose
+from robokin.kernel.geometric_jacobian import motion
 from robokin.workspace.placing_joints import closed_form_of
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.sizes import Measure
@@ -99,7 +100,7 @@ def _one_joint(space: Space, several: bool) -> Measure:
     """The length of an arc or of a line."""
     method = "the only joint's stroke times the length that a unit of it makes"
     (i,) = space.moving
-    _, J = Placing(moving_chain(space)).placed(np.array([[0.5 * (space.low[i] + space.high[i])]]))
+    J = motion(moving_chain(space), np.array([[0.5 * (space.low[i] + space.high[i])]])).linear
     value = 0.0 if several else float(np.linalg.norm(J) * (space.high[i] - space.low[i]))
     return Measure(value, ROUNDING * value, method, 1)
 
@@ -107,7 +108,7 @@ def _one_joint(space: Space, several: bool) -> Measure:
 def _slides(space: Space, several: bool) -> Measure:
     """The volume of the box that three slides make, upright or slanting, each place of it once."""
     moving = list(space.moving)
-    _, J = Placing(moving_chain(space)).placed(0.5 * (space.low + space.high)[moving, None])
+    J = motion(moving_chain(space), 0.5 * (space.low + space.high)[moving, None]).linear
     value = 0.0 if several else float(abs(np.linalg.det(J[:, :, 0])) * np.prod((space.high - space.low)[moving]))
     return Measure(value, ROUNDING * value, "the strokes times the volume of the slides' directions", 1)
 
@@ -117,7 +118,7 @@ def _slide_across(space: Space) -> int | None:
     moving = list(space.moving)
     rng = np.random.default_rng(7)
     q = space.low[moving, None] + (space.high - space.low)[moving, None] * rng.random((len(moving), PROBES))
-    _, J = Placing(moving_chain(space)).placed(q)
+    J = motion(moving_chain(space), q).linear
     for k, i in enumerate(moving):
         if space.robot.revolute[i] or np.max(np.ptp(J[k], axis=1)) > UPRIGHT:
             continue
@@ -152,7 +153,7 @@ def _marks(space: Space, each: int, seed: int) -> tuple[Array, float]:
     if not sides:
         return np.zeros((2, 0)), 0.0
     q = np.concatenate(sides, axis=1)
-    p, _ = Placing(moving_chain(space)).placed(q)
+    p = motion(moving_chain(space), q).tool[3]
     _, found = closed_form_of(space, first_free=True).solutions(np.ascontiguousarray(p.T))
     return np.asarray(np.clip(found[:, 1:].T, low[1:, None], high[1:, None])), 1.0 / each
 
@@ -168,7 +169,8 @@ def _block(space: Space, several: bool, rest: Array) -> Array:
     first = space.moving[0]
     middle = np.full((1, rest.shape[1]), 0.5 * (space.low[first] + space.high[first]))
     q = np.concatenate([middle, rest])
-    p, J = Placing(moving_chain(space)).placed(q)
+    J, _, tool = motion(moving_chain(space), q)
+    p = tool[3]
     weight = np.abs(np.linalg.det(J.transpose(2, 0, 1)))
     return np.asarray(weight * _share(space, q, p, several))
 
@@ -215,9 +217,6 @@ def _turned_otherwise(space: Space, own: Array, other: Array) -> Flags:
 
     The joints that do not move the tool's origin stand still.
     """
-    plan = Placing(moving_chain(space)).plan
-    turned = []
-    for q in (own, other):
-        *_, tool = plan.columns(np.ascontiguousarray(q.T))
-        turned.append(np.stack([np.broadcast_to(entry, len(q)) for column in tool[:3] for entry in column]))
-    return np.asarray(np.max(np.abs(turned[0] - turned[1]), axis=0) > ALIKE)
+    chain = moving_chain(space)
+    turned = pose(chain, own)[:, :3, :3] - pose(chain, other)[:, :3, :3]
+    return np.asarray(np.max(np.abs(turned), axis=(1, 2)) > ALIKE)

@@ -14,16 +14,15 @@ forms give the answer (one_spare.py), they follow the first searches instead.
 
 from __future__ import annotations
 
-from weakref import WeakKeyDictionary
-
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
-from robokin.workspace.damped_newton import newton_step
+from robokin.kernel.damped_newton import held_at, limited, solved
+from robokin.kernel.facts import fact
+from robokin.kernel.geometric_jacobian import crossed, motion
 from robokin.workspace.extremes import extent, outermost
 from robokin.workspace.faces import edges_of, faces_of
 from robokin.workspace.one_spare import one_spare_of
-from robokin.workspace.placing import Placing, crossed
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.space import Space
 from robokin.workspace.starts import Starts
@@ -77,23 +76,27 @@ STEP = 0.6
 """The longest step of one joint [rad | size]."""
 
 
+FLOOR, LEAST = 1e-2, 1e-11
+"""The least pivot, as a part of the distance, and what is always added to it and to the damping [1]."""
+
+
 class Descent:
     """Reaching for points with the moving joints of a space."""
 
     def __init__(self, space: Space) -> None:
         moving = list(space.moving)
-        self.placing = Placing(moving_chain(space))
+        self.chain = moving_chain(space)
         self.low, self.high, self.full = space.low[moving], space.high[moving], space.full[moving]
         self.size = space.size
         self.basis = space.basis if space.basis is not None else np.eye(3)
-        self.turning = self.placing.revolute[:, None, None].astype(np.float64)
-        self.all_turn = bool(self.placing.revolute.all())
+        self.turning = self.chain.revolute[:, None, None].astype(np.float64)
+        self.all_turn = bool(self.chain.revolute.all())
         self.centre = space.centre
-        self.scale = np.where(self.placing.revolute, 1.0, space.size)[:, None]
+        self.scale = np.where(self.chain.revolute, 1.0, space.size)[:, None]
         self.lever = self.scale[:, :, None] / space.size
-        self.starts = Starts(self.placing, self.low, self.high, _outer(space))
+        self.starts = Starts(self.chain, self.low, self.high, _outer(space))
         self.exact = one_spare_of(space)
-        box = self.placing, self.low, self.high, self.full
+        box = self.chain, self.low, self.high, self.full
         spare = len(moving) > space.dimension and self.exact is None
         self.tables = [faces_of(*box), edges_of(*box)] if spare else []
         self.every_table, self.learned = self.tables, list[Starts]()
@@ -116,7 +119,7 @@ class Descent:
         where so far away that none was sought."""
         inside, q = self.reached(points)
         away = np.zeros(points.shape)
-        away[~inside] = points[~inside] - self.placing.placed(q[:, ~inside])[0].T
+        away[~inside] = points[~inside] - motion(self.chain, q[:, ~inside]).tool[3].T
         return away
 
     def reached(self, points: Array) -> tuple[Flags, Array]:
@@ -137,7 +140,7 @@ class Descent:
     def learn(self, q: Array) -> None:
         """Begin searches also at configurations q (n, k) [rad | m], since they lead where no others did."""
         self.tables = self.every_table
-        self.learned.append(Starts(self.placing, self.low, self.high, more=q, kept=0))
+        self.learned.append(Starts(self.chain, self.low, self.high, more=q, kept=0))
 
     def _beyond(self, points: Array) -> Flags:
         """(m,) whether points (3, m) [m] lie so far from what can be reached that they need not be sought."""
@@ -231,25 +234,48 @@ class Descent:
     def _model(self, t: Array, q: Array) -> tuple[Array, Array, Array]:
         """What q (n, m) lack of t, e: (3, m) [size]; the derivatives J of the position (n, 3, m) and, for each joint,
         J_i - e × z_i (n, 3, m) [size]: its product with J_j, j >= i, is the second derivative of |e|² / 2."""
-        p, J, z = self.placing.with_axes(q)
-        e = (t - p) / self.size
+        J, z, tool = motion(self.chain, q)
+        e = (t - tool[3]) / self.size
         J *= self.lever
         turned = crossed(e, z) if self.all_turn else crossed(e, z) * self.turning
         return e, J, np.subtract(J, turned, out=turned)
 
     def _step(self, e: Array, J: Array, H: Array, far: Array, mu: Array, q: Array) -> tuple[Array, Array]:
         """The step (n, m) [rad | m], and what it promises to take off the squared distance (m,)."""
-        at_low, at_high = q <= self.box[0], q >= self.box[1]
         pull = np.sum(J * e, axis=1)
-        held = (at_low & (pull < 0.0)) | (at_high & (pull > 0.0))
+        held = held_at(q, *self.box, pull)
         dq, gain = newton_step(J, H, pull, held, far, mu)
-        pushed = ((at_low & (dq < 0.0)) | (at_high & (dq > 0.0))) & ~held
+        pushed = held_at(q, *self.box, dq) & ~held
         again = np.flatnonzero(pushed.any(axis=0))
         if len(again):
             J, H, pull, far, mu = (part.take(again, axis=-1) for part in (J, H, pull, far, mu))
             dq[:, again], gain[again] = newton_step(J, H, pull, (held | pushed)[:, again], far, mu)
-        dq *= np.minimum(1.0, STEP / np.maximum(np.max(np.abs(dq), axis=0), 1e-300))
-        return dq * self.scale, gain
+        return limited(dq, STEP, axis=0) * self.scale, gain
+
+
+def newton_step(J: Array, H: Array, pull: Array, held: Flags, far: Array, mu: Array) -> tuple[Array, Array]:
+    """Newton's step (n, m) with some joints held, and what it promises to take off |e|² (m,), infinite where the
+    second derivatives are not those of a minimum."""
+    distance = np.sqrt(far)
+    floor, damping = FLOOR * distance + LEAST, mu * distance + LEAST
+    if held.any():
+        free = np.where(held, 0.0, 1.0)
+        J, H, pull = J * free[:, None], H * free[:, None], pull * free
+    # Only what is on and right of the diagonal counts.
+    A = H[:, None, 0] * J[None, :, 0]
+    A += H[:, None, 1] * J[None, :, 1]
+    A += H[:, None, 2] * J[None, :, 2]
+    plain = np.ones(len(far), dtype=bool)
+
+    def pivot(found: Array) -> Array:
+        found = found + damping
+        np.logical_and(plain, found > 0.0, out=plain)
+        return np.maximum(np.abs(found), floor)
+
+    dq, D, y = solved(A, pull, pivot)
+    gain = np.sum(y * y / D, axis=0)
+    gain[~plain] = np.inf
+    return dq, gain
 
 
 def _outer(space: Space) -> Array:
@@ -315,11 +341,7 @@ class _Pool:
         return answer
 
 
-_kept: WeakKeyDictionary[Space, Descent] = WeakKeyDictionary()
-
-
+@fact
 def descent_of(space: Space) -> Descent:
     """The descent of a space, with its table of starts, made when it is first asked for."""
-    if space not in _kept:
-        _kept[space] = Descent(space)
-    return _kept[space]
+    return Descent(space)

@@ -26,13 +26,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
-from robokin.inverse.elimination.padding import joint_frames_of
 from robokin.kernel.chain import Chain
+from robokin.kernel.damped_newton import held_at
+from robokin.kernel.facts import fact
+from robokin.kernel.frames import frames
+from robokin.kernel.geometric_jacobian import jacobian_of
 from robokin.workspace.sampling import joint_values, moving_chain, positions
 from robokin.workspace.sizes import Extent
 from robokin.workspace.space import TURN, Space
@@ -104,21 +106,16 @@ class _Box:
     full: Flags
 
 
-_kept: WeakKeyDictionary[Space, dict[int, Extent]] = WeakKeyDictionary()
-
-
 def extent(space: Space, seed: int = 0) -> Extent:
     """The bounds of the reachable set along the world's axes, its least and greatest distance from the base's origin.
 
     Each is the best of several local extremes, found to 1e-12 of the arm's size; that a better one is far from
     every start is not proven, only unlikely. Joints that do not move the origin are in the middle of their range.
     """
-    known = _kept.setdefault(space, {})
-    if seed not in known:
-        known[seed] = _extent(space, seed)
-    return known[seed]
+    return _extent(space, seed)
 
 
+@fact
 def _extent(space: Space, seed: int) -> Extent:
     origin = space.robot.base[:3, 3].copy()
     q = np.tile(0.5 * (space.low + space.high), (8, 1))
@@ -270,7 +267,7 @@ def _polish(box: _Box, goals: _Goals, q: Array) -> Array:
     f = goals.values(p)
     radius = np.full(len(q), 0.5)
     for _ in range(STEPS):
-        held = ~box.full & (((q <= box.low) & (gradient > 0)) | ((q >= box.high) & (gradient < 0)))
+        held = ~box.full & held_at(q, box.low, box.high, -gradient)
         gradient = np.where(held, 0.0, gradient)
         going = (np.max(np.abs(gradient), axis=1) > STILL) & (radius > STILL)
         if not np.any(going):
@@ -309,13 +306,11 @@ def _inside(box: _Box, q: Array, step: Array) -> Array:
 
 def _derivatives(chain: Chain, goals: _Goals, q: Array) -> tuple[Array, Array, Array]:
     """p (m, 3), and the functions' gradients (m, n) and Hessians (m, n, n) at q: (m, n)."""
-    F = joint_frames_of(chain, q)
-    z, o, p = F[:, :-1, :3, 2], F[:, :-1, :3, 3], F[:, -1, :3, 3]
-    turns = chain.revolute[:, None]
-    J = np.where(turns, np.cross(z, p[:, None] - o), z)
+    F = frames(chain, q)
+    p, J = F[:, -1, :3, 3], jacobian_of(F, chain.revolute)[:, :3].swapaxes(1, 2)
     slope = goals.slopes(p)
     gradient = np.einsum("mik,mk->mi", J, slope)
-    bent = np.where(turns, np.cross(slope[:, None], z), 0.0)
+    bent = np.where(chain.revolute[:, None], np.cross(slope[:, None], F[:, :-1, :3, 2]), 0.0)
     second = np.triu(bent @ J.swapaxes(1, 2))
     second = second + np.triu(second, 1).swapaxes(1, 2)
     return p, gradient, second + goals.w[:, None, None] * (J @ J.swapaxes(1, 2))

@@ -20,7 +20,7 @@ from itertools import combinations, product
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.workspace.placing import Placing
+from robokin.kernel.chain import Chain
 from robokin.workspace.starts import Starts
 
 FACE, EDGE = 4096, 1024
@@ -34,24 +34,24 @@ MANY = 7
 more joints, the less is one of them in the way, and the longer the tables take."""
 
 
-def faces_of(placing: Placing, low: Array, high: Array, full: Flags) -> list[Starts]:
+def faces_of(chain: Chain, low: Array, high: Array, full: Flags) -> list[Starts]:
     """Tables of starts with one joint held; low, high, full (n,) the joint box [rad | m]."""
     chosen = np.arange(len(low))
     if len(low) > MANY:
         limited = np.flatnonzero(~full)
         chosen = limited if len(limited) else chosen[-1:]
     holds = [((int(i), value),) for i in chosen for value in _held(low, high, full, int(i), SECTIONS[0])]
-    return _tables(placing, (low, high), holds, FACE)
+    return _tables(chain, (low, high), holds, FACE)
 
 
-def edges_of(placing: Placing, low: Array, high: Array, full: Flags) -> list[Starts]:
+def edges_of(chain: Chain, low: Array, high: Array, full: Flags) -> list[Starts]:
     """Tables of starts with two joints held; none for an arm of many joints."""
     n = len(low)
     if n > MANY:
         return []
     each = [[(i, v) for v in _held(low, high, full, i, SECTIONS[1])] for i in range(n)]
     pairs = [pair for i, j in combinations(range(n), 2) for pair in product(each[i], each[j])]
-    return _tables(placing, (low, high), pairs, EDGE)
+    return _tables(chain, (low, high), pairs, EDGE)
 
 
 def _held(low: Array, high: Array, full: Flags, i: int, sections: int) -> list[float]:
@@ -62,12 +62,12 @@ def _held(low: Array, high: Array, full: Flags, i: int, sections: int) -> list[f
 
 
 def _tables(
-    placing: Placing, box: tuple[Array, Array], holds: Sequence[Sequence[tuple[int, float]]], kept: int
+    chain: Chain, box: tuple[Array, Array], holds: Sequence[Sequence[tuple[int, float]]], kept: int
 ) -> list[Starts]:
     tables = []
     for hold in holds:
         low, high = box[0].copy(), box[1].copy()
         for i, value in hold:
             low[i] = high[i] = value
-        tables.append(Starts(placing, low, high, kept=kept))
+        tables.append(Starts(chain, low, high, kept=kept))
     return tables

@@ -21,7 +21,8 @@ from dataclasses import replace
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.workspace.placing import Placing
+from robokin.kernel.chain import Chain
+from robokin.kernel.geometric_jacobian import motion
 from robokin.workspace.placing_joints import ClosedForm
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.space import RANK, TURN, Space
@@ -70,11 +71,11 @@ def one_spare_of(space: Space) -> OneSpare | None:
     n, d = len(space.moving), space.dimension
     if n != d + 1 or space.basis is None or d < 2 or not _in_a_plane(space, n - 3):
         return None
-    placing, low, high, full = _box(space)
+    chain, low, high, full = _box(space)
     rng = np.random.default_rng(31)
     q = low[:, None] + (high - low)[:, None] * rng.random((n, PROBES))
-    _, J = placing.placed(q)
-    J[placing.revolute] /= space.size
+    J = motion(chain, q).linear
+    J[chain.revolute] /= space.size
     holds = []
     for k in range(n):
         if _rank(np.delete(J, k, axis=0)) < d:
@@ -83,19 +84,19 @@ def one_spare_of(space: Space) -> OneSpare | None:
             holds += [(k, float(low[k])), (k, float(high[k]))]
         elif k == n - 3:
             holds.append((k, float(low[k])))
-    singular = _singular(placing, q, space.size)
+    singular = _singular(chain, q, space.size)
     if singular is None:
         return None
     for value in singular:
-        at = low[-1] + np.mod(value - low[-1], TURN) if placing.revolute[-1] else value
+        at = low[-1] + np.mod(value - low[-1], TURN) if chain.revolute[-1] else value
         if low[-1] <= at <= high[-1]:
             holds.insert(0, (n - 1, float(at)))
     return OneSpare(space, holds)
 
 
-def _box(space: Space) -> tuple[Placing, Array, Array, Flags]:
+def _box(space: Space) -> tuple[Chain, Array, Array, Flags]:
     moving = list(space.moving)
-    return Placing(moving_chain(space)), space.low[moving], space.high[moving], space.full[moving]
+    return moving_chain(space), space.low[moving], space.high[moving], space.full[moving]
 
 
 def _rank(J: Array) -> int:
@@ -107,10 +108,10 @@ def _rank(J: Array) -> int:
 def _in_a_plane(space: Space, first: int) -> bool:
     """Whether the moving joints from `first` on, of which the last three, turn about parallel axes or slide square to
     them, and whatever comes before moves their plane."""
-    placing, low, high, _ = _box(space)
+    chain, low, high, _ = _box(space)
     q = 0.5 * (low + high)[:, None]
-    _, J, Z = placing.with_axes(q)
-    z, turns = Z[first:, :, 0], placing.revolute[first:]
+    J, Z, _ = motion(chain, q)
+    z, turns = Z[first:, :, 0], chain.revolute[first:]
     if not turns.any():
         return False
     normal = z[turns][0]
@@ -121,22 +122,22 @@ def _in_a_plane(space: Space, first: int) -> bool:
         return True
     # The determinant of the waist's and the last two's derivatives must not vanish everywhere.
     q = low[:, None] + (high - low)[:, None] * np.random.default_rng(29).random((len(low), PROBES))
-    _, J, Z = placing.with_axes(q)
+    J, Z, _ = motion(chain, q)
     axis = Z[first:][turns][0]
-    across = np.abs(np.sum(J[0] * axis, axis=0)) / (space.size if placing.revolute[0] else 1.0)
+    across = np.abs(np.sum(J[0] * axis, axis=0)) / (space.size if chain.revolute[0] else 1.0)
     return bool(np.max(across) > RANK)
 
 
-def _singular(placing: Placing, q: Array, size: float) -> list[float] | None:
+def _singular(chain: Chain, q: Array, size: float) -> list[float] | None:
     """The values of the last joint at which its derivative and that of the one before it are parallel; None where
     they always are."""
-    turns = bool(placing.revolute[-1])
+    turns = bool(chain.revolute[-1])
     at = np.linspace(0.0, TURN, 8, endpoint=False) if turns else np.array([0.0, 1.0]) * size
     q = np.repeat(q[:, :1], len(at), axis=1)
     q[-1] = at
-    _, J, Z = placing.with_axes(q)
-    J[placing.revolute] /= size
-    normal = Z[placing.revolute][-1]
+    J, Z, _ = motion(chain, q)
+    J[chain.revolute] /= size
+    normal = Z[chain.revolute][-1]
     det = np.sum(np.cross(J[-2], J[-1], axis=0) * normal, axis=0)
     if np.max(np.abs(det)) <= NONE:
         return None

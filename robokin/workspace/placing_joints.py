@@ -8,7 +8,6 @@ sliding ones at its tool that must come out as zero.
 from __future__ import annotations
 
 from itertools import combinations
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -16,9 +15,9 @@ from robokin.arrays import Array, Index
 from robokin.inverse.analysis import Analysis, analyse
 from robokin.inverse.solve_blocks import BLOCK, quick_block
 from robokin.inverse.verify import within_limits
-from robokin.kernel.chain import Chain
-from robokin.spatial import exact, z_to
-from robokin.workspace.placing import Placing
+from robokin.kernel.chain import Chain, with_joints
+from robokin.kernel.facts import fact
+from robokin.kernel.geometric_jacobian import motion
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.space import Space
 
@@ -72,15 +71,14 @@ class ClosedForm:
         return np.bincount(self.solutions(points)[0], minlength=len(points))
 
 
-_kept: WeakKeyDictionary[Space, dict[bool, ClosedForm]] = WeakKeyDictionary()
-
-
 def closed_form_of(space: Space, first_free: bool = False) -> ClosedForm:
     """The closed form of a space, made when it is first asked for."""
-    kept = _kept.setdefault(space, {})
-    if first_free not in kept:
-        kept[first_free] = ClosedForm(space, first_free)
-    return kept[first_free]
+    return _closed_form(space, first_free)
+
+
+@fact
+def _closed_form(space: Space, first_free: bool) -> ClosedForm:
+    return ClosedForm(space, first_free)
 
 
 def _with_slides(chain: Chain, count: int, low: Array, high: Array) -> Chain:
@@ -88,17 +86,10 @@ def _with_slides(chain: Chain, count: int, low: Array, high: Array) -> Chain:
     q = low[:, None] + (high - low)[:, None] * np.random.default_rng(5).random((chain.n, PROBES))
 
     def made(axes: tuple[int, ...]) -> Chain:
-        # A slide after a slide: only the direction of each matters.
-        constants = list(chain.constants)
-        for axis in axes:
-            turn = z_to(np.eye(3)[axis])
-            constants[-1] = exact(constants[-1] @ turn)
-            constants.append(turn.T)
-        revolute = np.concatenate([chain.revolute, np.zeros(count, dtype=bool)])
-        return Chain(np.stack(constants), revolute, np.concatenate([chain.offsets, np.zeros(count)]))
+        return with_joints(chain, axes, [False] * count)
 
     def rated(axes: tuple[int, ...]) -> float:
-        _, J = Placing(made(axes)).placed(np.concatenate([q, np.zeros((count, PROBES))]))
+        J = motion(made(axes), np.concatenate([q, np.zeros((count, PROBES))])).linear
         return float(np.median(np.abs(np.linalg.det(J.transpose(2, 0, 1)))))
 
     return made(max(combinations(range(3), count), key=rated))

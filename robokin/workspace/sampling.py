@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -18,12 +17,11 @@ from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.jobs.ordered_map import in_order
 from robokin.jobs.sequences import RANDOM_BLOCK, Kind, grid_sides, unit_points
-from robokin.kernel.chain import Chain
+from robokin.kernel.chain import Chain, with_joints_at
 from robokin.kernel.columns import cos_sin_of_halves
-from robokin.spatial import exact, rotation_transform, translation_transform
+from robokin.kernel.entries import Entry, increased, plus, turned, turned_back
+from robokin.kernel.facts import fact
 from robokin.workspace.space import Space
-
-Entry = Array | float
 
 BLOCK = 4096
 """Configurations followed at once: their columns (32 kB each) stay in the second-level cache."""
@@ -132,64 +130,24 @@ def _origin(chain: Chain, values: Array, cosines: Array, sines: Array) -> list[E
         if chain.revolute[i]:
             row -= 1
             c, s = cosines[row], sines[row]
-            point = [_mixed(((1.0, c, x), (-1.0, s, y))), _mixed(((1.0, s, x), (1.0, c, y))), z]
+            point = [turned_back(c, x, s, y), turned(s, x, c, y), z]
         else:
-            point = [x, y, values[i] + z]
-        C = chain.constants[i]
-        point = [
-            _mixed(((float(C[k, 0]), 1.0, point[0]), (float(C[k, 1]), 1.0, point[1]), (float(C[k, 2]), 1.0, point[2])),
-                   float(C[k, 3]))
-            for k in range(3)
-        ]  # fmt: skip
+            point = [x, y, plus(values[i], z)]
+        point = [_moved(row.tolist(), point) for row in chain.constants[i, :3]]
     return point
 
 
-def _mixed(terms: tuple[tuple[float, Entry, Entry], ...], constant: float = 0.0) -> Entry:
-    """The sum of number · entry · entry, sparing what factors of 0 and ±1 spare; arrays passed in stay as they are."""
-    total: Entry | None = None
-    for number, a, b in terms:
-        if isinstance(a, float) and isinstance(b, float):
-            constant += number * a * b
-            continue
-        if isinstance(a, float):
-            number, a = number * a, b
-        elif isinstance(b, float):
-            number *= b
-        else:
-            a = a * b
-        if number == 0.0:
-            continue
-        if total is None:
-            total = a if number == 1.0 else number * a
-        elif number == 1.0:
-            total = total + a
-        elif number == -1.0:
-            total = total - a
-        else:
-            total = total + number * a
-    if total is None:
-        return constant
-    return total + constant if constant else total
+def _moved(weights: list[float], point: list[Entry]) -> Entry:
+    """An entry of C p for a row (4,) of C and a point p; what is the same for all is summed up first."""
+    total: Entry = weights[3]
+    for weight, part in sorted(zip(weights, point, strict=False), key=lambda pair: not isinstance(pair[1], float)):
+        total = increased(total, weight, part)
+    return total
 
 
-_chains: WeakKeyDictionary[Space, Chain] = WeakKeyDictionary()
-
-
+@fact
 def moving_chain(space: Space) -> Chain:
-    """The chain of the joints that move the tool's origin; the others are part of its constants. Kept."""
-    chain = _chains.get(space)
-    if chain is None:
-        constants = [space.chain.constants[0]]
-        for i, C in enumerate(space.chain.constants[1:]):
-            if i in space.moving:
-                constants.append(C)
-            else:
-                # A joint that is held has its value; of any other that does not move the origin none matters.
-                middle = 0.5 * (space.low[i] + space.high[i]) + space.chain.offsets[i]
-                z = [0.0, 0.0, 1.0]
-                turns = space.chain.revolute[i]
-                at = rotation_transform(z, middle) if turns else translation_transform(middle * np.array(z))
-                constants[-1] = exact(constants[-1] @ (at if space.held[i] else np.eye(4)) @ C)
-        kept = list(space.moving)
-        chain = _chains[space] = Chain(np.stack(constants), space.chain.revolute[kept], space.chain.offsets[kept])
-    return chain
+    """The chain of the joints that move the tool's origin; the others are part of its constants."""
+    # A joint that is held has its value; of any other that does not move the origin none matters.
+    middle = np.where(space.held, 0.5 * (space.low + space.high), -space.chain.offsets)
+    return with_joints_at(space.chain, {i: float(middle[i]) for i in range(space.chain.n) if i not in space.moving})

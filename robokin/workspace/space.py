@@ -10,10 +10,10 @@ import numpy as np
 from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.errors import InputError
-from robokin.inverse.elimination.padding import joint_frames_of
-from robokin.kernel.chain import Chain, chain_of, chain_size
-from robokin.model import Joint, JointType, Robot
-from robokin.spatial import rotation_transform, translation_transform
+from robokin.kernel.chain import Chain, chain_of, chain_size, row_standing
+from robokin.kernel.frames import frames
+from robokin.kernel.geometric_jacobian import jacobian_of
+from robokin.model import Robot
 
 TURN = 2.0 * np.pi
 
@@ -64,9 +64,11 @@ class Space(Brief):
         held, robot = self.held, self.robot
         if not held.any():
             return robot
-        value = dict(zip((id(joint) for joint in robot.joints), 0.5 * (self.low + self.high), strict=True))
-        kept = {id(joint) for joint, stays in zip(robot.joints, held, strict=True) if not stays}
-        rows = [row if not row.moves or id(row) in kept else _fixed(row, value[id(row)]) for row in robot.rows]
+        middle = (0.5 * (self.low + self.high)).tolist()
+        standing = {id(joint): at for joint, at, stays in zip(robot.joints, middle, held, strict=True) if stays}
+        rows = [
+            row_standing(row, standing[id(row)], robot.convention) if id(row) in standing else row for row in robot.rows
+        ]
         return replace(robot, rows=tuple(rows), poses={})
 
     @property
@@ -86,36 +88,20 @@ def space_of(robot: Robot) -> Space:
     size = size or robot.units.metres
     # Values of no meaning: whatever holds at all of them holds everywhere.
     q = low + (high - low) * np.random.default_rng(11).random((PROBES, robot.n))
-    F = joint_frames_of(chain, q)
-    z, o, p = F[:, :-1, :3, 2], F[:, :-1, :3, 3], F[:, -1, None, :3, 3]
-    turns = robot.revolute[:, None]
-    J = np.where(turns, np.cross(z, p - o), z * size)
-    J[:, high - low <= HELD * np.where(robot.revolute, 1.0, size)] = 0.0
-    moving = tuple(int(i) for i in np.flatnonzero(np.max(np.linalg.norm(J, axis=2), axis=0) > STILL * size))
+    F = frames(chain, q)
+    points, J = F[:, -1, :3, 3], jacobian_of(F, robot.revolute, size=size)[:, :3]
+    J[:, :, high - low <= HELD * np.where(robot.revolute, 1.0, size)] = 0.0
+    moving = tuple(int(i) for i in np.flatnonzero(np.max(np.linalg.norm(J, axis=1), axis=0) > STILL))
     if not moving:
-        return Space(robot, chain, low, high, full, (), 0, np.zeros((3, 0)), p[0, 0], None, size)
+        return Space(robot, chain, low, high, full, (), 0, np.zeros((3, 0)), points[0], None, size)
     values = np.linalg.svd(J, compute_uv=False)
     dimension = int(np.max(np.sum(values > RANK * values[:, :1], axis=1)))
-    points = p[:, 0]
     _, spread, directions = np.linalg.svd(points - points[0])
     flat = dimension == 3 or bool(np.all(spread[dimension:] <= RANK * spread[0]))
     basis = np.eye(3) if dimension == 3 else directions[:dimension].T if flat else None
     first = moving[0]
     axis = F[0, first].copy() if robot.revolute[first] and full[first] and first == 0 else None
     return Space(robot, chain, low, high, full, moving, dimension, basis, points[0].copy(), axis, size)
-
-
-def _fixed(row: Joint, value: float) -> Joint:
-    """A joint that stays at a value [rad | m], as a fixed row."""
-    at = row.sense * value + row.offset
-    if row.axis is not None:
-        turns = row.type is JointType.REVOLUTE
-        motion = rotation_transform(row.axis, at) if turns else translation_transform(at * row.axis)
-        origin = motion if row.origin is None else row.origin @ motion
-        return replace(row, type=JointType.FIXED, origin=origin, axis=None, offset=0.0, texts=())
-    if row.type is JointType.REVOLUTE:
-        return replace(row, type=JointType.FIXED, theta=row.theta + at, offset=0.0, texts=())
-    return replace(row, type=JointType.FIXED, d=row.d + at, offset=0.0, texts=())
 
 
 def joint_box(robot: Robot) -> tuple[Array, Array, Flags]:

@@ -11,7 +11,8 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.jobs.sequences import unit_points
-from robokin.workspace.placing import Placing
+from robokin.kernel.chain import Chain
+from robokin.kernel.geometric_jacobian import motion
 
 KEPT = 1 << 15
 """Sampled configurations."""
@@ -31,8 +32,8 @@ LOOKED_AT = 12
 """Samples of a cell among which the best is chosen."""
 
 THIN = 1e-6
-"""Least side of a table, as a part of how far from the axis it lies: what the first joint leaves alone may be one point,
-of which samples differ by rounding."""
+"""Least side of a table, as a part of how far from the axis it lies: what the first joint leaves alone may be one
+point, of which samples differ by rounding."""
 
 TURN = 2.0 * np.pi
 
@@ -43,8 +44,8 @@ class Starts:
     low, high: (n,) the box [rad | m] that is sampled: of a face of the joint box one of them has one value.
     """
 
-    def __init__(self, placing: Placing, low: Array, high: Array, more: Array | None = None, kept: int = KEPT) -> None:
-        self.turns = bool(placing.revolute[0])
+    def __init__(self, chain: Chain, low: Array, high: Array, more: Array | None = None, kept: int = KEPT) -> None:
+        self.turns = bool(chain.revolute[0])
         self.low, self.high = low, high
         n = len(low)
         more = np.zeros((n, 0)) if more is None else more
@@ -54,9 +55,9 @@ class Starts:
         q = low[:, None] + (high - low)[:, None] * u
         q = np.concatenate([q, more], axis=1)
         q[0] = 0.5 * (low[0] + high[0])
-        p, _ = placing.placed(q)
+        p = motion(chain, q).tool[3]
         # The first axis is the same at every configuration.
-        self.foot, self.frame = _axis(placing)
+        self.foot, self.frame = _axis(chain)
         seen, value = self._seen(p)
         self.offset = value - q[0]
         self.q, self.seen = q, seen
@@ -123,9 +124,9 @@ class Starts:
         return cells
 
 
-def _axis(placing: Placing) -> tuple[Array, Array]:
+def _axis(chain: Chain) -> tuple[Array, Array]:
     """A point of the first joint's axis (3,) and a frame (3, 3) whose z it is; the base and nothing else moves it."""
-    constant = placing.constants[0]
+    constant = chain.constants[0]
     return constant[:3, 3], constant[:3, :3]
 
 

@@ -8,12 +8,12 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Task, analysis_of
-from robokin.inverse.elimination.padding import joint_frames_of
 from robokin.inverse.numeric.closing import closing_nearest, exact_within
 from robokin.inverse.solve_blocks import BLOCK, quick_block, solve_block
 from robokin.inverse.verify import Found, within_limits
 from robokin.jobs.ordered_map import in_order
 from robokin.kernel.chain import chain_of
+from robokin.kernel.frames import pose
 from robokin.spatial import transform
 from robokin.workspace.attitudes import Attitudes
 from robokin.workspace.space import Space
@@ -136,7 +136,7 @@ def _rolled(space: Space, tried: Attitudes, target: Index, q: Array) -> Array:
     if tried.group != "S2":
         return R
     z = R[:, :, 2]
-    x = joint_frames_of(chain_of(space.arm), q)[:, -1, :3, 0]
+    x = pose(chain_of(space.arm), q)[:, :3, 0]
     x = x - np.sum(x * z, axis=1)[:, None] * z
     x /= np.linalg.norm(x, axis=1)[:, None]
     return np.stack([x, np.cross(z, x), z], axis=2)

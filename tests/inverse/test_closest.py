@@ -9,12 +9,12 @@ import robokin
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.numeric.closest import beyond_reach, nearest_configurations
 from robokin.inverse.numeric.closing import closing_nearest
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.numeric.position_first import DescentEnds, Ways
 from robokin.inverse.numeric.second_order import go_down, slope, solve_definite
 from robokin.inverse.numeric.turn_in_place import turned_in_place
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import residuals
+from robokin.kernel.residual import error_and_jacobian
 from robokin.spatial import nearest_rotation, rotation_angle, rotation_from_axis_angle, transform
 
 ARMS = ["puma560", "ur5e", "planar3r", "scara", "stanford-arte", "scorbot", "kr210-r2700", "crx10ia", "panda", "iiwa14"]

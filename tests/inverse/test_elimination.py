@@ -12,7 +12,7 @@ import pytest
 import robokin
 from robokin.inverse.elimination import fourteen_functions as fourteen
 from robokin.inverse.elimination.loop import loop_of
-from robokin.inverse.elimination.loop_newton import closing_at, determinants, joint_motion, refine
+from robokin.inverse.elimination.loop_newton import closing_at, determinants, refine
 from robokin.inverse.elimination.splits import (
     SPLITS,
     Elimination,
@@ -22,6 +22,7 @@ from robokin.inverse.elimination.splits import (
     rescue_candidates,
 )
 from robokin.kernel.chain import Chain, chain_of
+from robokin.kernel.frames import joint_motion
 from robokin.spatial import nearest_rotation, rotation_from_rpy, transform
 from robokin.spatial.dh import standard_dh
 

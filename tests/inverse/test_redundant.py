@@ -13,12 +13,12 @@ from inverse.truth import Scale
 import robokin
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.numeric.closing import closing_nearest
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.self_motion.bounded_task import BoundedTask
 from robokin.inverse.self_motion.limit_contacts import contacts
 from robokin.inverse.self_motion.pieces_within import rays, spread_over, stepped_on
 from robokin.inverse.self_motion.redundant import NOT_FOUND, UNPROVEN
 from robokin.inverse.verify import CLOSES, SAME, Found, residuals
+from robokin.kernel.residual import error_and_jacobian
 
 ARMS = ["panda", "fr3", "iiwa14", "gen72", "r1pro-left", "openarm-left", "human-arm"]
 """Arms of seven joints and more with closed forms of six."""

@@ -8,14 +8,13 @@ from inverse.arms import OFFSET_WRIST, SPHERICAL_WRIST
 
 import robokin
 from robokin.inverse.elimination.loop import chain_size
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.self_motion.arcs import arcs_within
 from robokin.inverse.self_motion.nearest_member import nearest_on
 from robokin.inverse.self_motion.singular_solutions import classify, trace
 from robokin.inverse.self_motion.solution_sets import families, on_curve
 from robokin.kernel.chain import chain_of
+from robokin.kernel.residual import error_and_jacobian
 from robokin.model import Joint, JointType, Robot
-from robokin.spatial import rotation_from_axis_angle
 
 R, P = JointType.REVOLUTE, JointType.PRISMATIC
 TURN = 2 * np.pi
@@ -87,32 +86,6 @@ def distance_to(robot, rows, q):
 def assert_reaches(robot, T, q):
     gap = robokin.forward_kinematics(robot, q) - T
     assert np.max(np.abs(gap)) < 1e-9
-
-
-def test_error_and_jacobian_of_few_and_of_many(rng):
-    h = 1e-6
-    for name in ("puma560", "panda", "stanford", "scara"):
-        robot, chain, size, _, _ = arm(name, np.zeros(robokin.load(name).n))
-        scale = np.where(robot.revolute, 1.0, size)
-        q = rng.uniform(-3, 3, (2100, robot.n))
-        found, T = robokin.forward_kinematics(robot, q), robokin.forward_kinematics(robot, q[::-1])
-        whole = error_and_jacobian(chain, T, q, size)
-        for k in (0, 1, 40, 81):
-            part = error_and_jacobian(chain, T[:k], q[:k], size)
-            assert [array.shape for array in part] == [(k, 6), (k, 6, robot.n)]
-            assert all(np.allclose(a, b[:k], rtol=0, atol=1e-9) for a, b in zip(part, whole, strict=True))
-        e, J = whole
-        assert np.allclose(e[:, :3] * size, T[:, :3, 3] - found[:, :3, 3], atol=1e-12)
-        for i in range(0, 2100, 50):
-            angle = np.linalg.norm(e[i, 3:])
-            assert np.allclose(rotation_from_axis_angle(e[i, 3:], angle) @ found[i, :3, :3], T[i, :3, :3], atol=1e-6)
-        for j in range(robot.n):
-            ahead, behind = (robokin.forward_kinematics(robot, q + d * scale * np.eye(robot.n)[j]) for d in (h, -h))
-            slope = (error_and_jacobian(chain, ahead, q, size)[0] - error_and_jacobian(chain, behind, q, size)[0]) / 2
-            assert np.allclose(slope / h, J[:, :, j], atol=1e-7)
-    half = robokin.forward_kinematics(robot, [0.0, 0.0, 0.0, np.pi])[None]
-    e, _ = error_and_jacobian(chain, half, np.zeros((1, 4)), size)
-    assert np.isclose(np.linalg.norm(e[0, 3:]), np.pi)
 
 
 @pytest.mark.parametrize(("robot", "values", "joints"), CURVES)

@@ -12,8 +12,8 @@ import robokin
 from robokin.errors import InputError
 from robokin.formats import library_names, load_any
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.joint_axes import nearest_point
 from robokin.inverse.solve import solve_many
+from robokin.kernel.joint_axes import nearest_point
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_angle, rotation_from_rpy, transform
 

@@ -8,9 +8,9 @@ import pytest
 import robokin
 from robokin.formats import library_names, load_any
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.elimination.padding import joint_frames_of
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.solve import TASKS, solve_many
+from robokin.kernel.frames import frames
+from robokin.kernel.residual import error_and_jacobian
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_from_axis_angle, rotation_from_rpy
 
@@ -64,7 +64,7 @@ def regular(robot, task, q):
     if not len(analysis.moving):
         return np.ones(len(q), dtype=bool)
     q = np.concatenate([q[:, analysis.moving], np.zeros((len(q), analysis.open))], axis=1)
-    _, J = error_and_jacobian(chain, joint_frames_of(chain, q)[:, -1], q, analysis.size)
+    _, J = error_and_jacobian(chain, frames(chain, q)[:, -1], q, analysis.size)
     return np.linalg.svd(J, compute_uv=False)[:, analysis.window.dimension - 1] > REGULAR
 
 

@@ -12,7 +12,7 @@ from workspace.spare_arms import KINDS, drawn_arm, sampled
 from workspace.spare_sizes import FAMILIES, spare_arm
 
 import robokin
-from robokin.inverse.elimination.padding import joint_frames_of
+from robokin.kernel.frames import frames
 from robokin.model import Joint, JointType, Robot
 from robokin.workspace.attitudes import attitudes, group_of
 from robokin.workspace.descent import descent_of
@@ -159,7 +159,7 @@ def test_orientations_beside_reached_ones_are_not_denied():
     space = space_of(robokin.load("openarm-left"))
     grid = attitudes(space, group_of(space), 400, 0)
     q = 0.5 * (space.low + space.high) + 0.2 * (space.high - space.low)
-    p = joint_frames_of(space.chain, q[None])[0, -1, :3, 3]
+    p = frames(space.chain, q[None])[0, -1, :3, 3]
     quick, found = table(space, grid, p[None])[0], at_one_place(space, grid, p)
     assert np.all(found[quick])
     assert np.sum(found) > np.sum(quick)

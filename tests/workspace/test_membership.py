@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import robokin
+from robokin.kernel.geometric_jacobian import motion
 from robokin.model import Joint, JointType, Robot
 from robokin.workspace.descent import descent_of
 from robokin.workspace.membership import finitely_many, reachable, solution_count
-from robokin.workspace.placing import Placing
 from robokin.workspace.sampling import moving_chain, positions
 from robokin.workspace.space import space_of
 
@@ -118,7 +118,7 @@ def test_values_that_are_found_reach_the_points_within_the_limits(rng):
     points = rng.uniform(-1.0, 1.0, (2000, 3))
     inside, q = descent_of(space).reached(points)
     assert 0.2 < inside.mean() < 0.8
-    p, _ = Placing(moving_chain(space)).placed(q[:, inside])
+    p = motion(moving_chain(space), q[:, inside]).tool[3]
     assert np.max(np.abs(p.T - points[inside])) <= 1e-7 * space.size
     low, high = space.low[:5, None], space.high[:5, None]
     assert np.all((q[:, inside] >= low) & (q[:, inside] <= high))
@@ -172,14 +172,13 @@ def test_infinitely_many_are_not_counted():
 def test_derivatives_are_differences(name, rng):
     space = space_of(robokin.load(name))
     chain = moving_chain(space)
-    placing = Placing(chain)
     q = sampled(space, rng, 20)[list(space.moving)]
-    p, J = placing.placed(q)
+    J, _, tool = motion(chain, q)
     full = np.zeros((len(space.low), 20))
     full[list(space.moving)] = q
-    assert np.allclose(p, positions(space, full), atol=1e-12)
+    assert np.allclose(tool[3], positions(space, full), atol=1e-12)
     for i in range(chain.n):
         step = np.zeros_like(q)
         step[i] = 1e-6
-        ahead, behind = placing.placed(q + step)[0], placing.placed(q - step)[0]
+        ahead, behind = motion(chain, q + step).tool[3], motion(chain, q - step).tool[3]
         assert np.allclose((ahead - behind) / 2e-6, J[i], atol=1e-8)

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from robokin.inverse.closed_form.entries import EntryFrame, applied_back, times, transposed
 from robokin.inverse.elimination.loop import Loop
+from robokin.kernel.entries import EntryFrame, applied_back, times, transposed
 from robokin.spatial import invert
 
 X = (1.0, -1.0, -1.0)

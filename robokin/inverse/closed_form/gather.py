@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.arrays import Array, Flags, Index
-from robokin.inverse.closed_form.entries import (
+from robokin.inverse.closed_form.joint_functions import Motion
+from robokin.inverse.elimination.loop import Candidates
+from robokin.kernel.entries import (
     Entry,
     plus,
     times,
 )
-from robokin.inverse.closed_form.joint_functions import Motion
-from robokin.inverse.elimination.loop import Candidates
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 

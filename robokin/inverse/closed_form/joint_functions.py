@@ -12,7 +12,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from robokin.arrays import Flags
-from robokin.inverse.closed_form.entries import Entry, Vector, angle, dot, minus, plus, times
 from robokin.inverse.closed_form.trigonometry import (
     Turn,
     linear_roots,
@@ -22,6 +21,7 @@ from robokin.inverse.closed_form.trigonometry import (
     turned,
     turned_back,
 )
+from robokin.kernel.entries import Entry, Vector, angle, dot, minus, plus, times
 
 Form = Sequence[Entry]
 Motion = tuple[Entry, ...]

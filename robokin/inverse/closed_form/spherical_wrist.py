@@ -47,23 +47,6 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.closed_form.backwards import backwards, backwards_closing
-from robokin.inverse.closed_form.entries import (
-    Entry,
-    EntryFrame,
-    Vector,
-    applied_back,
-    columns,
-    constant,
-    dot,
-    minus,
-    moved,
-    moved_back,
-    plus,
-    root,
-    taken,
-    times,
-    transposed,
-)
 from robokin.inverse.closed_form.equation_pair import Pair
 from robokin.inverse.closed_form.gather import (
     Marks,
@@ -94,6 +77,23 @@ from robokin.inverse.closed_form.trigonometry import (
 )
 from robokin.inverse.closed_form.turns import right_angled, three_turns
 from robokin.inverse.elimination.loop import Candidates, Loop
+from robokin.kernel.entries import (
+    Entry,
+    EntryFrame,
+    Vector,
+    applied_back,
+    columns,
+    constant,
+    dot,
+    minus,
+    moved,
+    moved_back,
+    plus,
+    root,
+    taken,
+    times,
+    transposed,
+)
 
 GEOMETRIC = 1e-9
 """Axes that pass each other at less than this (in units of the arm's size) meet: tables of decimal

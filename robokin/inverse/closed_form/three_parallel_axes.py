@@ -42,25 +42,6 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.closed_form.backwards import backwards, backwards_closing
-from robokin.inverse.closed_form.entries import (
-    Entry,
-    EntryFrame,
-    Matrix,
-    Vector,
-    angle,
-    applied,
-    applied_back,
-    columns,
-    constant,
-    dot,
-    minus,
-    moved_back,
-    multiplied,
-    plus,
-    taken,
-    times,
-    transposed,
-)
 from robokin.inverse.closed_form.equation_pair import RANK, Pair
 from robokin.inverse.closed_form.gather import (
     Marks,
@@ -91,6 +72,25 @@ from robokin.inverse.closed_form.trigonometry import (
 )
 from robokin.inverse.closed_form.turns import two_turns
 from robokin.inverse.elimination.loop import Candidates, Loop
+from robokin.kernel.entries import (
+    Entry,
+    EntryFrame,
+    Matrix,
+    Vector,
+    angle,
+    applied,
+    applied_back,
+    columns,
+    constant,
+    dot,
+    minus,
+    moved_back,
+    multiplied,
+    plus,
+    taken,
+    times,
+    transposed,
+)
 
 PARALLEL = 1e-9
 """Axes at less than this angle [rad] are parallel: tables of decimal fractions and degrees are good to

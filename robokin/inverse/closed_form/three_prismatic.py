@@ -22,7 +22,12 @@ from __future__ import annotations
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.inverse.closed_form.entries import (
+from robokin.inverse.closed_form.gather import LEVER, Marks, gathered
+from robokin.inverse.closed_form.joint_functions import Motion, Prismatic, Revolute, kind
+from robokin.inverse.closed_form.loop_axes import PARALLEL
+from robokin.inverse.closed_form.turns import three_turns
+from robokin.inverse.elimination.loop import Candidates, Loop
+from robokin.kernel.entries import (
     Entry,
     EntryFrame,
     Matrix,
@@ -37,11 +42,6 @@ from robokin.inverse.closed_form.entries import (
     times,
     transposed,
 )
-from robokin.inverse.closed_form.gather import LEVER, Marks, gathered
-from robokin.inverse.closed_form.joint_functions import Motion, Prismatic, Revolute, kind
-from robokin.inverse.closed_form.loop_axes import PARALLEL
-from robokin.inverse.closed_form.turns import three_turns
-from robokin.inverse.elimination.loop import Candidates, Loop
 
 PLANAR = 1e-10
 """Three directions that span less than this volume lie in a plane: solving for the lengths would leave

@@ -20,7 +20,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.inverse.closed_form.entries import (
+from robokin.kernel.entries import (
     Entry,
     minus,
     plus,

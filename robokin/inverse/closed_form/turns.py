@@ -29,7 +29,16 @@ import math
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.inverse.closed_form.entries import (
+from robokin.inverse.closed_form.trigonometry import (
+    CLAMP,
+    FREE,
+    Turn,
+    both,
+    normalized,
+    turn_between,
+    turned,
+)
+from robokin.kernel.entries import (
     NOTHING,
     Entry,
     Matrix,
@@ -41,15 +50,6 @@ from robokin.inverse.closed_form.entries import (
     plus,
     root,
     times,
-)
-from robokin.inverse.closed_form.trigonometry import (
-    CLAMP,
-    FREE,
-    Turn,
-    both,
-    normalized,
-    turn_between,
-    turned,
 )
 
 

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.arrays import Array, Complex, Flags, Index
-from robokin.inverse.elimination.loop import Loop
+from robokin.inverse.elimination.loop import Loop, columns_of, follow, twist_columns
 
 TURN = 2.0 * np.pi
 
@@ -86,7 +86,7 @@ def complex_refine(
         with np.errstate(over="ignore", invalid="ignore"):
             for _ in range(steps):
                 axes, error, _ = follow(loop, L, q)
-                dq = solved(twists(loop, axes), error)
+                dq = solved(twist_columns(loop, axes), error)
                 length = np.abs(dq).max(axis=0)
                 length[~np.isfinite(length)] = np.inf
                 dq[:, length == np.inf] = 0.0
@@ -177,63 +177,7 @@ def distinct(loop: Loop, index: Index, values: NDArray[Any], apart: float | Arra
 def jacobian(loop: Loop, q: Complex) -> Complex:
     """S (s, 6, 6) at q (6, s): a joint's twist in each column."""
     axes, _, _ = follow(loop, np.zeros((4, 3, 1)), q)
-    return twists(loop, axes)
-
-
-def columns_of(closing: NDArray[Any]) -> NDArray[Any]:
-    """Columns x, y, z, p of L6 (4, 3, m) of closing (m, 4, 4), for `follow`."""
-    return np.ascontiguousarray(closing[:, :3].transpose(2, 1, 0))
-
-
-def follow(loop: Loop, last: NDArray[Any], q: Complex) -> tuple[Complex, Complex, Complex]:
-    """The joints' axes z and o (joint, 2, 3, s), X's error v [size], w [rad] (6, s) and 3 less its trace (s,).
-
-    last: (4, 3, s) from `columns_of`; q: (6, s).
-    """
-    s = q.shape[1]
-    axes = np.empty((6, 2, 3, s), dtype=np.complex128)
-    X = np.zeros((4, 3, s), dtype=np.complex128)
-    X[(0, 1, 2), (0, 1, 2)] = 1.0
-    # A slide's value may be so large that its cosine is no number.
-    angles = np.where(loop.revolute[:, None], q, 0.0)
-    c, sine = np.cos(angles), np.sin(angles)
-    turned = np.empty((2, 3, s), dtype=np.complex128)
-    for i, turns in enumerate(loop.revolute):
-        axes[i] = X[2:]
-        if turns:
-            np.multiply(X[:2], c[i], out=turned)
-            X[:2] *= sine[i]
-            turned[0] += X[1]
-            turned[1] -= X[0]
-            X[:2] = turned
-        else:
-            X[3] += q[i] * X[2]
-        if i < 5:
-            # Real and imaginary parts are two real columns: half the work of a complex product.
-            parts = X.view(np.float64).reshape(4, 6 * s)
-            X = (loop.links[i].T @ parts).reshape(4, 3, 2 * s).view(np.complex128)
-    p = X[3]
-    X = last[:, 0, None] * X[0] + last[:, 1, None] * X[1] + last[:, 2, None] * X[2]
-    error = np.empty((6, s), dtype=np.complex128)
-    np.add(X[3], p, out=error[:3])
-    for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
-        np.subtract(X[i, j], X[j, i], out=error[3 + k])
-    error[3:] *= 0.5
-    return axes, error, 3.0 - (X[0, 0] + X[1, 1] + X[2, 2])
-
-
-def twists(loop: Loop, axes: Complex) -> Complex:
-    """S (s, 6, 6): the joints' twists (o × z, z) or (z, 0) as columns, for their axes (joint, 2, 3, s)."""
-    z, o = axes[:, 0], axes[:, 1]
-    S = np.empty((6, 6, z.shape[-1]), dtype=np.complex128)  # (row, joint, s)
-    S[3:] = z.transpose(1, 0, 2)
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        np.multiply(o[:, j], z[:, k], out=S[i])
-        S[i] -= o[:, k] * z[:, j]
-    for slides in np.flatnonzero(~loop.revolute):
-        S[:3, slides] = z[slides]
-        S[3:, slides] = 0.0
-    return np.ascontiguousarray(S.transpose(2, 0, 1))
+    return twist_columns(loop, axes)
 
 
 def solved(S: Complex, right: Complex) -> Complex:
@@ -264,6 +208,6 @@ def _determinants(S: Complex) -> Complex:
 def relative(axes: Complex, error: Complex, trace: Complex) -> Array:
     """The residual (s,) of what `follow` gives, relative to the size of the terms of X; infinite where not finite."""
     whole = np.sqrt(np.square(np.abs(error)).sum(axis=0) + np.square(np.abs(trace)))
-    size = np.square(np.abs(axes[:, 0])).sum(axis=1).max(axis=0)
+    size = np.square(np.abs(axes[0])).sum(axis=1).max(axis=0)
     residual = whole / size
     return np.where(np.isfinite(residual), residual, np.inf)

@@ -26,12 +26,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array, Complex, Flags, Index
-from robokin.inverse.elimination.complex_newton import (
-    follow,
-    solved,
-    twists,
-)
-from robokin.inverse.elimination.loop import Loop
+from robokin.inverse.elimination.complex_newton import solved
+from robokin.inverse.elimination.loop import Loop, follow, twist_columns
+from robokin.inverse.elimination.loop_newton import closing_at
 
 ROOTS = 2
 """u = s²: at the end of a path on which two solutions meet q is then a power series in s."""
@@ -177,7 +174,7 @@ def _track(loop: Loop, start: Points, target: Points, bend: Complex, part: Index
     s = np.ones(len(part))
     last, twist = _on_line(start, target, s, bend)
     axes, _, _ = follow(loop, last, q)
-    v = ROOTS * solved(twists(loop, axes), twist)
+    v = ROOTS * solved(twist_columns(loop, axes), twist)
     before, tangent = q, v  # the point before and its tangent; with the infinite step between they say nothing
     h, gone, tried = np.full(len(part), FIRST), np.full(len(part), np.inf), np.full(len(part), np.inf)
     late = np.zeros(len(part))
@@ -193,10 +190,10 @@ def _track(loop: Loop, start: Points, target: Points, bend: Complex, part: Index
         stride = (np.abs(guess - q) * weight).max(axis=0)
         last, twist = _on_line(start, target, to**ROOTS, bend)
         axes, error, _ = follow(loop, last, guess)
-        first = solved(twists(loop, axes), error)
+        first = solved(twist_columns(loop, axes), error)
         guess -= first
         axes, error, _ = follow(loop, last, guess)
-        both = solved(twists(loop, axes), np.stack([error, twist], axis=-1))
+        both = solved(twist_columns(loop, axes), np.stack([error, twist], axis=-1))
         second, ahead = both[..., 0], ROOTS * to ** (ROOTS - 1) * both[..., 1]
         guess -= second
         one, two = (np.abs(first) * weight).max(axis=0), (np.abs(second) * weight).max(axis=0)
@@ -277,19 +274,4 @@ def _on_line(start: Points, target: Points, u: Array, bend: Complex) -> tuple[Co
 
 def points_at(loop: Loop, values: Complex) -> Points:
     """The points of the targets that complex joint values (6, s) [rad | size] reach."""
-    X = np.broadcast_to(np.eye(4, dtype=np.complex128), (values.shape[1], 4, 4))
-    for i, turns in enumerate(loop.revolute):
-        J = np.zeros((values.shape[1], 4, 4), dtype=np.complex128)
-        J[:, (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
-        if turns:
-            c, s = np.cos(values[i]), np.sin(values[i])
-            J[:, 0, 0], J[:, 0, 1], J[:, 1, 0], J[:, 1, 1] = c, -s, s, c
-        else:
-            J[:, 2, 3] = values[i]
-        X = X @ J
-        if i < 5:
-            X = X @ loop.links[i]
-    back = np.array(X)
-    back[:, :3, :3] = X[:, :3, :3].transpose(0, 2, 1)
-    back[:, :3, 3] = -np.einsum("sij,sj->si", back[:, :3, :3], X[:, :3, 3])
-    return points_of(back)
+    return points_of(closing_at(loop, values.T))

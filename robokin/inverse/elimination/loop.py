@@ -12,9 +12,14 @@ one case. Only L6 depends on the target.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from robokin.arrays import Array, Complex, Flags, Index
 from robokin.kernel.chain import Chain, chain_size
+from robokin.kernel.sweep import skew_part, sweep, twists
 from robokin.spatial import invert
 
 
@@ -72,3 +77,29 @@ def loop_of(chain: Chain) -> Loop:
     constants = chain.constants.copy()
     constants[:, :3, 3] /= size
     return Loop(chain.revolute, constants[1:6], constants[0], constants[6], size)
+
+
+def columns_of(closing: NDArray[Any]) -> NDArray[Any]:
+    """Columns x, y, z, p of L6 (4, 3, m) of closing (m, 4, 4), for `follow`."""
+    return np.ascontiguousarray(closing[:, :3].transpose(2, 1, 0))
+
+
+def follow(loop: Loop, last: NDArray[Any], q: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """The joints' axes z and o (2, joint, 3, s), X's error v [size], w (6, s) and 3 less its trace (s,).
+
+    X = J1 L1 … J6 L6; w is the vector of its rotation's skew part. last: (4, 3, s) from `columns_of`; q: (6, s), real
+    or complex.
+    """
+    axes, X = sweep(loop.links, loop.revolute, q)
+    error = np.empty((6, q.shape[1]), dtype=q.dtype)
+    p = X[3]
+    X = last[:, 0, None] * X[0] + last[:, 1, None] * X[1] + last[:, 2, None] * X[2]
+    np.add(X[3], p, out=error[:3])
+    skew_part(X, error[3:])
+    error[3:] *= 0.5
+    return axes, error, 3.0 - (X[0, 0] + X[1, 1] + X[2, 2])
+
+
+def twist_columns(loop: Loop, axes: NDArray[Any]) -> NDArray[Any]:
+    """S (s, 6, 6): the joints' twists as columns, for their axes from `follow`."""
+    return np.ascontiguousarray(twists(axes, loop.revolute).transpose(2, 1, 0))

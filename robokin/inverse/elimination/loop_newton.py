@@ -16,11 +16,15 @@ All arrays here have the candidates last, (…, s), and each operation is on all
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from robokin.arrays import Array, Index
-from robokin.inverse.elimination.loop import Loop
-from robokin.spatial import invert
+from robokin.inverse.elimination.loop import Loop, follow
+from robokin.kernel.damped_newton import limited, singular_step, solved
+from robokin.kernel.sweep import sweep, twists
 
 STEP = 0.5
 """The longest step of one joint [rad | size]: further off, the tangent says nothing of the curve."""
@@ -73,14 +77,14 @@ def refine(loop: Loop, closing: Array, index: Index, values: Array, steps: int) 
                     part, q, L, far = part[open_], q[:, open_], L[..., open_], far[open_]
                     axes, error = axes[..., open_], error[:, open_]
                     open_ = open_[open_]
-                S = _twists(loop, axes)
+                S = twists(axes, loop.revolute)
                 S[:, :3] /= far
                 S[slides] *= far
                 dq = _step(S, error)
                 if (long := far > LONG).any():
-                    dq[:, long] = (
-                        -STEP * limited(singular_step(S[..., long].transpose(2, 1, 0), error[:, long].T) / STEP).T
-                    )
+                    damping = np.einsum("cs,cs->s", error[:, long], error[:, long])
+                    dx = singular_step(S[..., long].transpose(2, 1, 0), error[:, long].T, damping)
+                    dq[:, long] = -limited(dx, STEP).T
                 dq[slides] *= far
                 # What has arrived stays, so that it does not depend on the others.
                 q += dq * open_
@@ -100,115 +104,38 @@ def determinants(loop: Loop, values: Array) -> Array:
     """|det S| (s,) at values (s, 6) [rad | size]: zero where the arm is singular. It depends on no target."""
     q = np.asarray(values, dtype=np.float64).T
     axes, _ = _follow(loop, np.zeros((4, 3, 1)), q)
-    return np.asarray(np.abs(np.linalg.det(_twists(loop, axes).transpose(2, 0, 1))))
+    return np.asarray(np.abs(np.linalg.det(twists(axes, loop.revolute).transpose(2, 0, 1))))
 
 
-def closing_at(loop: Loop, values: Array) -> Array:
-    """The L6 (k, 4, 4) that close the loop at values (k, 6) [rad | size]."""
-    X = np.broadcast_to(np.eye(4), (len(values), 4, 4))
-    for i, turns in enumerate(loop.revolute):
-        X = X @ joint_motion(bool(turns), values[:, i])
-        if i < 5:
-            X = X @ loop.links[i]
-    return invert(X)
-
-
-def joint_motion(turns: bool, q: Array) -> Array:
-    """J (s, 4, 4) at q (s,)."""
-    J = np.zeros((len(q), 4, 4), dtype=q.dtype)
-    J[:, (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
-    if turns:
-        c, s = np.cos(q), np.sin(q)
-        J[:, 0, 0], J[:, 0, 1], J[:, 1, 0], J[:, 1, 1] = c, -s, s, c
-    else:
-        J[:, 2, 3] = q
-    return J
+def closing_at(loop: Loop, values: NDArray[Any]) -> NDArray[Any]:
+    """The L6 (k, 4, 4) that close the loop at values (k, 6) [rad | size], real or complex."""
+    _, X = sweep(loop.links, loop.revolute, np.ascontiguousarray(values.T))
+    closing = np.zeros((len(values), 4, 4), dtype=X.dtype)
+    closing[:, :3, :3] = X[:3].transpose(2, 0, 1)
+    closing[:, :3, 3] = -np.einsum("crs,rs->sc", X[:3], X[3])
+    closing[:, 3, 3] = 1.0
+    return closing
 
 
 def _follow(loop: Loop, last: Array, q: Array) -> tuple[Array, Array]:
-    """The joints' axes z and o (joint, 2, 3, s) and X's error v [size], w [rad] (6, s) at q (6, s)."""
-    s = q.shape[1]
-    axes = np.empty((6, 2, 3, s))
-    X = np.zeros((4, 3, s))
-    X[(0, 1, 2), (0, 1, 2)] = 1.0
-    c, sine = np.cos(q), np.sin(q)
-    turned = np.empty((2, 3, s))
-    for i, turns in enumerate(loop.revolute):
-        axes[i] = X[2:]
-        if turns:
-            np.multiply(X[:2], c[i], out=turned)
-            X[:2] *= sine[i]
-            turned[0] += X[1]
-            turned[1] -= X[0]
-            X[:2] = turned
-        else:
-            X[3] += q[i] * X[2]
-        if i < 5:
-            X = (loop.links[i].T @ X.reshape(4, 3 * s)).reshape(4, 3, s)
-    p = X[3]
-    X = last[:, 0, None] * X[0] + last[:, 1, None] * X[1] + last[:, 2, None] * X[2]
-    error = np.empty((6, s))
-    np.add(X[3], p, out=error[:3])
+    """The joints' axes (2, joint, 3, s) and X's error v [size], w [rad] (6, s) at q (6, s)."""
+    axes, error, lack = follow(loop, last, q)
     w = error[3:]
-    for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
-        np.subtract(X[i, j], X[j, i], out=w[k])
-    sine_of_error = 0.5 * np.sqrt((w * w).sum(axis=0))
-    angle = np.arctan2(sine_of_error, 0.5 * (X[0, 0] + X[1, 1] + X[2, 2] - 1.0))
+    sine_of_error = np.sqrt((w * w).sum(axis=0))
+    angle = np.arctan2(sine_of_error, 1.0 - 0.5 * lack)
     none = sine_of_error == 0.0
-    w *= 0.5 * angle / np.where(none, 1.0, sine_of_error)
+    w *= angle / np.where(none, 1.0, sine_of_error)
     # A half turn has no sine and so no direction here: it must still not pass for the identity.
     w[0] += np.where(none, angle, 0.0)
     return axes, error
 
 
-def _twists(loop: Loop, axes: Array) -> Array:
-    """The joints' twists (joint, 6, s) for their axes (joint, 2, 3, s)."""
-    z, o = axes[:, 0], axes[:, 1]
-    S = np.empty((6, 6, z.shape[-1]))
-    S[:, 3:] = z
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        np.multiply(o[:, j], z[:, k], out=S[:, i])
-        S[:, i] -= o[:, k] * z[:, j]
-    for slides in np.flatnonzero(~loop.revolute):
-        S[slides, :3] = z[slides]
-        S[slides, 3:] = 0.0
-    return S
-
-
-def singular_step(S: Array, error: Array, damping: Array | None = None) -> Array:
-    """The dq (s, n) with (SᵀS + damping I) dq = Sᵀe, from the singular values of S (s, 6, n); error: (s, 6).
-
-    damping: (s,), |e|² if it is not given.
-    """
-    U, values, Vt = np.linalg.svd(S, full_matrices=False)
-    least = np.einsum("si,si->s", error, error) if damping is None else damping
-    squares = values * values + least[:, None] + (np.finfo(float).eps * values[:, :1]) ** 2
-    part = np.einsum("sik,si->sk", U, error) * values / np.maximum(squares, np.finfo(float).tiny)
-    return np.asarray(np.einsum("ski,sk->si", Vt, part))
-
-
-def limited(dq: Array) -> Array:
-    """Steps (s, n) shortened so that no joint moves by more than 1."""
-    return np.asarray(dq / np.maximum(np.max(np.abs(dq), axis=1, keepdims=True), 1.0))
-
-
 def _step(S: Array, error: Array) -> Array:
     """The damped Newton step (6, s) for twists (joint, 6, s) and error (6, s), by elimination."""
-    s = error.shape[1]
-    M = np.empty((6, 7, s))  # SᵀS + damping, of which the upper triangle is kept, and Sᵀe as a seventh column
-    for i in range(6):
-        np.einsum("cs,jcs->js", S[i], S[i:], out=M[i, i:6])
-    np.einsum("cs,jcs->js", error, S, out=M[:, 6])
+    n, s = len(S), error.shape[1]
+    M, b = np.empty((n, n, s)), np.einsum("cs,jcs->js", error, S)  # SᵀS + damping, its upper triangle, and Sᵀe
     damping = np.einsum("cs,cs->s", error, error)
-    for i in range(6):
+    for i in range(n):
+        np.einsum("cs,jcs->js", S[i], S[i:], out=M[i, i:])
         M[i, i] += damping + FLOOR * M[i, i]
-    for k in range(5):
-        # The matrix stays symmetric: column k below the diagonal is row k beside it.
-        factors = M[k, k + 1 : 6] / M[k, k]
-        M[k + 1 :, k + 1 :] -= factors[:, None] * M[k, None, k + 1 :]
-    dq = np.empty((6, s))
-    for k in range(5, -1, -1):
-        np.divide(M[k, 6], M[k, k], out=dq[k])
-        M[:k, 6] -= M[:k, k] * dq[k]
-    dq *= -STEP / np.maximum(np.abs(dq).max(axis=0), STEP)
-    return dq
+    return -limited(solved(M, b)[0], STEP, axis=0)

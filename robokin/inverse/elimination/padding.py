@@ -16,15 +16,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations, pairwise, permutations
-from weakref import WeakKeyDictionary
+from itertools import combinations, permutations
 
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.kernel.chain import Chain, chain_size
-from robokin.kernel.columns import ChainPlan, Constant
-from robokin.spatial import exact, invert, translation_transform, z_to
+from robokin.kernel.chain import Chain, chain_size, with_joints
+from robokin.kernel.frames import frames
+from robokin.kernel.geometric_jacobian import jacobian_of
+from robokin.spatial import exact, invert, translation_transform
 
 REGULAR = 1e-3
 """Least singular value (lengths in the arm's size) at which a choice of virtual joints counts as regular."""
@@ -53,9 +53,11 @@ def padded_chains(chain: Chain, most: int = 40) -> Iterator[Padded]:
     size = chain_size(chain)
     q = _sample(chain)
     rated: list[tuple[float, int, tuple[int, ...]]] = []
-    places = _frames(chain, q[0])
+    places = _places(chain, q[0])
     for place, G in enumerate(places):
-        J = _tool_jacobians(chain, q, G, size)
+        F = frames(chain, q)
+        F[:, -1] = F[:, -1] @ G
+        J = jacobian_of(F, chain.revolute, "tool", size)
         for chosen in combinations(range(6), missing):
             whole = np.concatenate([J, np.broadcast_to(np.eye(6)[:, chosen], (len(q), 6, missing))], axis=2)
             least = float(np.median(np.linalg.svd(whole, compute_uv=False)[:, -1]))
@@ -66,7 +68,8 @@ def padded_chains(chain: Chain, most: int = 40) -> Iterator[Padded]:
     for _, place, chosen in rated[:12]:
         for order in permutations(chosen):
             # Turns about one point may follow each other in any order; only where slides stand matters.
-            yield Padded(_appended(chain, places[place], order), missing)
+            axes, turning = [i % 3 for i in order], [i >= 3 for i in order]
+            yield Padded(with_joints(chain, axes, turning, places[place]), missing)
             count += 1
             if count >= most:
                 return
@@ -79,61 +82,16 @@ def _sample(chain: Chain) -> Array:
     return np.where(chain.revolute, q, 0.5 * size * q)
 
 
-_plans: WeakKeyDictionary[Chain, ChainPlan] = WeakKeyDictionary()
-
-
-def joint_plan(chain: Chain) -> ChainPlan:
-    """The way to the frame that each joint starts from and to the tool's, made when it is first asked for."""
-    plan = _plans.get(chain)
-    if plan is None:
-        segments = [[Constant(C, mark=True)] for C in chain.constants]
-        plan = _plans[chain] = ChainPlan(segments, chain.revolute, chain.offsets)
-    return plan
-
-
-def joint_frames_of(chain: Chain, q: Array) -> Array:
-    """The frame that each joint starts from and the tool's: (m, n + 1, 4, 4), at q: (m, n) without offsets."""
-    out = np.empty((len(q), chain.n + 1, 4, 4))
-    joint_plan(chain).frames(q, out)
-    return out
-
-
-def _tool_jacobians(chain: Chain, q: Array, G: Array, size: float) -> Array:
-    """Jacobians (m, 6, n) of the frame G fixed in the tool, in its own axes, lengths in the arm's size."""
-    F = joint_frames_of(chain, q)
-    tool = F[:, -1] @ G
-    R, p = tool[:, :3, :3], tool[:, None, :3, 3]
-    z, o = F[:, :-1, :3, 2], F[:, :-1, :3, 3]
-    turns = chain.revolute[:, None]
-    linear = np.where(turns, np.cross(z, p - o) / size, z)
-    angular = np.where(turns, z, 0.0)
-    return np.swapaxes(np.concatenate([linear @ R, angular @ R], axis=2), 1, 2)
-
-
-def _frames(chain: Chain, q: Array) -> list[Array]:
+def _places(chain: Chain, q: Array) -> list[Array]:
     """Frames in the tool whose axes the virtual joints may have: the tool's, the last joint's, the wrist's."""
     last = invert(chain.constants[-1])
-    frames = [np.eye(4), exact(last)]
+    places = [np.eye(4), exact(last)]
     if chain.n >= 2:
         # Where the last two axes meet, if they do: a third one through that point makes a spherical wrist.
-        F = joint_frames_of(chain, q[None])[0]
+        F = frames(chain, q)
         z, o = F[-3:-1, :3, 2], F[-3:-1, :3, 3]
         normal = np.cross(z[0], z[1])
         if chain.revolute[-2:].all() and normal @ normal > 1e-12:
             s = np.cross(o[0] - o[1], z[0]) @ -normal / (normal @ normal)
-            frames.append(exact(last @ translation_transform([0.0, 0.0, float(s)])))
-    return frames
-
-
-def _appended(chain: Chain, G: Array, order: tuple[int, ...]) -> Chain:
-    """The chain with virtual joints at the frame G in the tool: 0-2 slide along, 3-5 turn about x, y, z."""
-    frames = [G @ z_to(np.eye(3)[axis % 3]) for axis in order]
-    constants = [*chain.constants[:-1], chain.constants[-1] @ frames[0]]
-    for before, after in pairwise(frames):
-        constants.append(invert(before) @ after)
-    constants.append(invert(frames[-1]))
-    return Chain(
-        np.stack([exact(C) for C in constants]),
-        np.concatenate([chain.revolute, [axis >= 3 for axis in order]]),
-        np.concatenate([chain.offsets, np.zeros(len(order))]),
-    )
+            places.append(exact(last @ translation_transform([0.0, 0.0, float(s)])))
+    return places

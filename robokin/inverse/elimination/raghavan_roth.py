@@ -43,7 +43,7 @@ from robokin.arrays import Array, Complex, Index
 from robokin.inverse.elimination import fourteen_functions, pencil
 from robokin.inverse.elimination.fourteen_functions import X_PARTS, angle_of
 from robokin.inverse.elimination.loop import Candidates, ComplexCandidates, Loop
-from robokin.inverse.elimination.loop_newton import joint_motion
+from robokin.kernel.frames import joint_motion
 from robokin.spatial import invert, rotation_from_rpy, transform
 
 SPLITS = 12

@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +26,7 @@ from robokin.inverse.elimination.complex_newton import complex_refine, on_the_wa
 from robokin.inverse.elimination.loop import Candidates, Loop
 from robokin.inverse.elimination.loop_newton import closing_at, refine
 from robokin.inverse.elimination.raghavan_roth import PERTURBATION, SHIFT, SPLITS, STEEPEST, Elimination
+from robokin.kernel.facts import fact
 
 __all__ = [
     "SPLITS",
@@ -137,16 +137,14 @@ def _numbers_of_split(loop: Loop, split: int, closing: Array, generic: int) -> I
     return numbers
 
 
-_built: WeakKeyDictionary[Loop, dict[tuple[int, float, float], Elimination]] = WeakKeyDictionary()
-
-
 def elimination_of(loop: Loop, split: int, shift: float = SHIFT, perturbation: float = PERTURBATION) -> Elimination:
     """The elimination of a loop by one split, made when first asked for. Raises LinAlgError where there is none."""
-    kept = _built.setdefault(loop, {})
-    key = split, shift, perturbation
-    if key not in kept:
-        kept[key] = Elimination(loop, *key)
-    return kept[key]
+    return _elimination(loop, split, shift, perturbation)
+
+
+@fact
+def _elimination(loop: Loop, split: int, shift: float, perturbation: float) -> Elimination:
+    return Elimination(loop, split, shift, perturbation)
 
 
 def generic_count(loop: Loop, splits: list[int]) -> int | None:

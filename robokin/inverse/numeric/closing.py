@@ -20,11 +20,12 @@ import numpy as np
 from robokin.arrays import Array, Index
 from robokin.inverse.analysis import Analysis
 from robokin.inverse.numeric.closest import MoreStarts, initial_guesses, nearest_configurations
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.numeric.position_first import Ways
 from robokin.inverse.numeric.second_order import go_down
 from robokin.inverse.verify import CLOSES, Found, nothing
 from robokin.kernel.chain import Chain
+from robokin.kernel.damped_newton import brought_down, held_at, limited, singular_step
+from robokin.kernel.residual import error_and_jacobian
 
 TOGETHER = 32
 """Targets searched for at once: enough that the interpreter's share is spread thin; more gain little."""
@@ -163,39 +164,29 @@ def newton_within(chain: Chain, T: Array, q: Array, size: float, limits: Array, 
     """
     scale = np.where(chain.revolute, 1.0, size)
     low, high = (limits / scale[:, None]).T
-    x = np.clip(q / scale, low, high)
-    best, least, errors = x.copy(), np.full(len(x), np.inf), np.zeros((len(x), 6))
-    on = np.arange(len(x))
-    for step in range(steps + 1):
-        if not len(on):
-            break
-        e, J = error_and_jacobian(chain, T[on], x[on] * scale, size)
-        norm = np.sqrt(np.sum(e * e, axis=1))
-        less = norm < least[on]
-        best[on[less]], least[on[less]], errors[on[less]] = x[on[less]], norm[less], e[less]
-        open_ = norm > DONE
-        on, e, J, norm = on[open_], e[open_], J[open_], norm[open_]
-        if step < steps and len(on):
-            x[on] = np.clip(x[on] + _step(x[on], e, J, CAUTION * norm**2, low, high), low, high)
-    return best * scale, errors
+
+    def errors(rows: Index, x: Array) -> tuple[Array, Array]:
+        return error_and_jacobian(chain, T[rows], x * scale, size)
+
+    def step(rows: Index, x: Array, e: Array, J: Array) -> Array:
+        return _step(x, e, J, low, high)
+
+    x, error = brought_down(errors, step, q / scale, low, high, steps=steps, arrived=DONE**2)
+    return x * scale, error
 
 
-def _step(x: Array, e: Array, J: Array, damping: Array, low: Array, high: Array) -> Array:
+def _step(x: Array, e: Array, J: Array, low: Array, high: Array) -> Array:
     """The step (s, n) of the joints that it does not push outwards from their limits."""
-    uphill = np.einsum("sij,si->sj", J, e)
-    held = ((x <= low) & (uphill < 0.0)) | ((x >= high) & (uphill > 0.0))
+    damping = CAUTION * np.sum(e * e, axis=1)
+    held = held_at(x, low, high, np.einsum("sij,si->sj", J, e))
     dx = np.zeros(x.shape)
     for _ in range(3):
-        U, values, Vt = np.linalg.svd(np.where(held[:, None], 0.0, J), full_matrices=False)
-        along = np.einsum("sij,si->sj", U, e) * values / (values**2 + damping[:, None] + np.finfo(float).tiny)
-        dx = np.einsum("sji,sj->si", Vt, along)
-        outwards = ~held & (((x <= low) & (dx < 0.0)) | ((x >= high) & (dx > 0.0)))
+        dx = singular_step(np.where(held[:, None], 0.0, J), e, damping)
+        outwards = ~held & held_at(x, low, high, dx)
         if not outwards.any():
             break
         held |= outwards
-    dx = np.where(held, 0.0, dx)
-    limited: Array = dx * (LONGEST / np.maximum(np.max(np.abs(dx), axis=1), LONGEST))[:, None]
-    return limited
+    return limited(np.where(held, 0.0, dx), LONGEST)
 
 
 def _of(more: MoreStarts | None, some: Index) -> MoreStarts | None:

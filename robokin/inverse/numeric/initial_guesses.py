@@ -18,8 +18,8 @@ from itertools import product
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
-from robokin.inverse.elimination.padding import joint_frames_of
 from robokin.kernel.chain import Chain
+from robokin.kernel.frames import pose
 
 DRAWN = 2048
 """Configurations drawn in the box, and as many on its faces."""
@@ -80,7 +80,7 @@ def guesses(chain: Chain, limits: Array, size: float, seed: int) -> Guesses:
     at_limit = (rng.random((DRAWN, chain.n)) < 0.5) & bounded[np.arange(chain.n), side]
     faces = np.where(at_limit, ends[np.arange(chain.n), side], faces)
     q = np.concatenate([inside[parts(inside / scale)], faces[parts(faces / scale)], _corners(ends, bounded, rng)])
-    return Guesses(q, joint_frames_of(chain, q)[:, -1])
+    return Guesses(q, pose(chain, q))
 
 
 def between(chain: Chain, ends: Array, size: float, u: Array) -> Array:

@@ -13,10 +13,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from robokin.arrays import Array
-from robokin.inverse.elimination.loop_newton import LONG, singular_step
-from robokin.inverse.numeric.pose_error import error_and_jacobian
+from robokin.arrays import Array, Flags, Index
+from robokin.inverse.elimination.loop_newton import LONG
 from robokin.kernel.chain import Chain
+from robokin.kernel.damped_newton import brought_down, held_at, limited, singular_step
+from robokin.kernel.residual import error_and_jacobian
 
 STEP = 0.6
 """Longest step of a joint [rad | size]."""
@@ -40,46 +41,39 @@ def descend(
     limits: (n, 2) [rad | m]. Where an error remains, what comes closest is another module's business (`closest`).
     """
     scale = np.where(chain.revolute, 1.0, size)
-    x = q / scale
     low, high = (np.full(chain.n, -np.inf), np.full(chain.n, np.inf)) if limits is None else (limits / scale[:, None]).T
-    x = np.clip(x, low, high)
-    ends, errors = x.copy(), np.zeros((len(x), 6))
-    best, least, error = x.copy(), np.full(len(x), np.inf), np.zeros((len(x), 6))
-    on, identity = np.arange(len(x)), np.eye(chain.n)
+    x = np.clip(q / scale, low, high)
     # Lengths in the longest slide: what rounding leaves of positions would outweigh the errors of orientation.
     far = np.max(np.abs(x[:, ~chain.revolute]), axis=1, initial=1.0)[:, None]
-    unit, long = np.where(chain.revolute, 1.0, far), far[:, 0] > LONG
-    for step in range(steps + 1):
-        e, J = error_and_jacobian(chain, T, x * scale, size)
-        e[:, :3] /= far
-        J[:, :3] /= far[:, :, None]
-        J *= unit[:, None]
-        squared = np.sum(e * e, axis=1)
-        better = squared <= least
-        best[better], least[better], error[better] = x[better], squared[better], e[better]
-        # What has arrived stays: where a row ends must not depend on the others.
-        done = least * far[:, 0] ** 2 < ARRIVED
-        if step == steps or 3 * np.count_nonzero(done) >= len(done):
-            ends[on], errors[on, :3], errors[on, 3:] = best, error[:, :3] * far, error[:, 3:]
-            rest = ~done
-            if step == steps or not rest.any():
-                break
-            # Those that have arrived cost no more time.
-            on, T, x, best, least, error = on[rest], T[rest], x[rest], best[rest], least[rest], error[rest]
-            far, unit, long, done = far[rest], unit[rest], long[rest], done[rest]
-            e, J, squared = e[rest], J[rest], squared[rest]
-        gradient = np.einsum("sij,si->sj", J, e)
-        # A joint at its limit that the gradient pushes outwards takes no part.
-        held = ((x <= low) & (gradient < 0.0)) | ((x >= high) & (gradient > 0.0))
-        J = np.where(held[:, None, :], 0.0, J)
-        M = np.swapaxes(J, 1, 2) @ J
-        damping = np.minimum(DAMPING * squared, 1.0)[:, None]
-        damping = damping + FLOOR * np.where(held, 1.0, np.diagonal(M, axis1=1, axis2=2))
-        M += damping[:, :, None] * identity
-        dx = np.linalg.solve(M, np.where(held, 0.0, gradient)[:, :, None])[:, :, 0]
-        if long.any():
-            dx[long] = singular_step(J[long], e[long], np.minimum(DAMPING * squared[long], 1.0))
-        dx *= (STEP / np.maximum(np.max(np.abs(dx), axis=1), STEP))[:, None]
-        dx[done] = 0.0
-        x = np.clip(x + dx * unit, low, high)
-    return ends * scale, errors
+    unit = np.where(chain.revolute, 1.0, far)
+
+    def errors(rows: Index, x: Array) -> tuple[Array, Array]:
+        e, J = error_and_jacobian(chain, T[rows], x * scale, size)
+        e[:, :3] /= far[rows]
+        J[:, :3] /= far[rows, :, None]
+        J *= unit[rows, None]
+        return e, J
+
+    def step(rows: Index, x: Array, e: Array, J: Array) -> Array:
+        return _step(x, e, J, low, high, far[rows, 0] > LONG) * unit[rows]
+
+    x, e = brought_down(errors, step, x, low, high, steps=steps, arrived=ARRIVED / far[:, 0] ** 2)
+    e[:, :3] *= far
+    return x * scale, e
+
+
+def _step(x: Array, e: Array, J: Array, low: Array, high: Array, long: Flags) -> Array:
+    """The damped step (s, n), by the normal equations or, where slides are long (s,), by singular values."""
+    squared = np.sum(e * e, axis=1)
+    gradient = np.einsum("sij,si->sj", J, e)
+    held = held_at(x, low, high, gradient)
+    J = np.where(held[:, None, :], 0.0, J)
+    M = np.swapaxes(J, 1, 2) @ J
+    trust = np.minimum(DAMPING * squared, 1.0)
+    damping = trust[:, None] + FLOOR * np.where(held, 1.0, np.diagonal(M, axis1=1, axis2=2))
+    M += damping[:, :, None] * np.eye(J.shape[2])
+    side = np.where(held, 0.0, gradient)[:, :, None]
+    dx = np.asarray(np.linalg.solve(M, side)[:, :, 0], dtype=np.float64)
+    if long.any():
+        dx[long] = singular_step(J[long], e[long], trust[long])
+    return limited(dx, STEP)

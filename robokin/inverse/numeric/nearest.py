@@ -6,12 +6,12 @@ import numpy as np
 
 from robokin.arrays import Array, Flags
 from robokin.inverse.analysis import Analysis
-from robokin.inverse.elimination.padding import joint_frames_of
 from robokin.inverse.numeric.initial_guesses import between
 from robokin.inverse.numeric.least_squares import descend
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.verify import CLOSES, Found, closing_distances, nothing
 from robokin.kernel.chain import Chain
+from robokin.kernel.frames import pose
+from robokin.kernel.residual import error_and_jacobian
 
 STARTS = 64
 """Starts of a search for one target; PUMA's and Panda's poses are met from 8 of them in 99.95 % of the cases."""
@@ -76,7 +76,7 @@ def free_at(analysis: Analysis, q: Array) -> list[tuple[int, ...]]:
     chain, own, dimension = analysis.chain, q.shape[1], analysis.window.dimension
     # Where the pose is met does not matter: what the task leaves open turns from there.
     q = np.concatenate([q, np.zeros((len(q), analysis.open))], axis=1)
-    T = joint_frames_of(chain, q)[:, -1]
+    T = pose(chain, q)
     _, J = error_and_jacobian(chain, T, q, analysis.size)
     if chain.n == dimension:
         values = np.linalg.svd(J, compute_uv=False)

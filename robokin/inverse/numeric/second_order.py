@@ -35,8 +35,9 @@ from typing import NamedTuple
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.inverse.elimination.padding import joint_plan
 from robokin.kernel.chain import Chain
+from robokin.kernel.damped_newton import held_at, solved
+from robokin.kernel.geometric_jacobian import Motion, crossed, motion
 
 STEP = 0.6
 """Longest step of a joint [rad | size]: about as far as a quadratic model of a turn means anything. What has slid
@@ -85,17 +86,15 @@ def slope(chain: Chain, T: Array, x: Array, size: float, weight: Array) -> Slope
 
     T: (4, 3, s) the targets' columns x, y, z, p [m]; weight: w (s,).
     """
-    z, o, R, p = _frames(chain, x, size)
-    turns = chain.revolute[:, None, None]
-    w = np.where(turns, z, 0.0)
-    J = np.where(turns, _cross(z, (p - o) / size), z)
-    e = (p - T[3]) / size
+    J, z, R = _motion(chain, x, size)
+    w = np.where(chain.revolute[:, None, None], z, 0.0)
+    e = (R[3] - T[3]) / size
     M = R[0, :, None] * T[0] + R[1, :, None] * T[1] + R[2, :, None] * T[2]
     trace = M[0, 0] + M[1, 1] + M[2, 2]
     a = 0.5 * np.stack([M[2, 1] - M[1, 2], M[0, 2] - M[2, 0], M[1, 0] - M[0, 1]])
-    D = R - T[:3]
+    D = R[:3] - T[:3]
     place, turn = 0.5 * _dot(e, e), 0.25 * (_dot(D[0], D[0]) + _dot(D[1], D[1]) + _dot(D[2], D[2]))
-    U = J + _cross(e, w)
+    U = J + crossed(e, w)
     V = (0.5 * weight) * (trace * w - (w[:, 0, None] * M[0] + w[:, 1, None] * M[1] + w[:, 2, None] * M[2]))
     H = np.zeros((chain.n, *x.shape))
     for left, right in ((U, J), (V, w)):
@@ -131,7 +130,7 @@ def go_down(
     done = np.zeros(len(damping), dtype=bool)
     end, rows = (x.copy(), here.place.copy(), here.turn.copy()), np.arange(len(damping))
     for step in range(steps):
-        held = ((x <= low) & (here.gradient > 0.0)) | ((x >= high) & (here.gradient < 0.0))
+        held = held_at(x, low, high, -here.gradient)
         unit = np.where(chain.revolute[:, None], 1.0, np.maximum(np.abs(x), 1.0))
         wish, damping, definite = _step(here, held, damping, weight, unit)
         ahead = np.minimum(np.maximum(x + wish, low), high)
@@ -185,57 +184,29 @@ def _step(here: Slope, held: Flags, damping: Array, weight: Array, unit: Array) 
 def solve_definite(A: Array, b: Array) -> tuple[Array, Flags]:
     """x with A x = b, for A: (n, n, s) symmetric, overwritten, and b: (n, s); and where A is positive definite.
 
-    A = L D Lᵀ by elimination without interchanges, which is stable where A is definite, that is where D > 0, here
-    above rounding (N. J. Higham, "Accuracy and Stability of Numerical Algorithms", 2nd ed., 2002, section 10.1).
-    Elsewhere x means nothing.
+    That is where its pivots are above rounding; elsewhere x means nothing.
     """
-    n = len(A)
-    y, pivots = b.copy(), np.empty(b.shape)
-    for k in range(n):
-        # What is not positive is made infinite: nothing is taken from the rows below it, and nothing grows.
-        pivots[k] = np.where(A[k, k] > PIVOT, A[k, k], np.inf)
-        column = A[k + 1 :, k] / pivots[k]
-        A[k + 1 :, k + 1 :] -= column[:, None] * A[k, k + 1 :]
-        y[k + 1 :] -= column * y[k]
-    for k in range(n - 1, -1, -1):
-        y[k] /= pivots[k]
-        y[:k] -= A[:k, k] * y[k]
+    # What is not positive is made infinite: nothing is taken from the rows below it, and nothing grows.
+    x, pivots, _ = solved(A, b, lambda pivot: np.where(pivot > PIVOT, pivot, np.inf))
     definite: Flags = np.all(np.isfinite(pivots), axis=0)
-    return y, definite
+    return x, definite
 
 
-def _frames(chain: Chain, x: Array, size: float) -> tuple[Array, Array, Array, Array]:
-    """Axes z and points o on them, each (n, 3, s), and the tool's columns x, y, z (3, 3, s) and p (3, s) [m]."""
-    z, o = np.empty((2, chain.n, 3, x.shape[1]))
-    tool = np.empty((4, 3, x.shape[1]))
+def _motion(chain: Chain, x: Array, size: float) -> Motion:
+    """How the tool moves at x: (n, s) [rad | size]."""
     q = x if chain.revolute.all() else np.where(chain.revolute[:, None], x, x * size)
-    for i, frame in enumerate(joint_plan(chain).columns(q)):
-        wanted = zip((z[i], o[i]), frame[2:], strict=True) if i < chain.n else zip(tool, frame, strict=True)
-        for column, entries in wanted:
-            for row, entry in enumerate(entries):
-                column[row] = entry
-    return z, o, tool[:3], tool[3]
+    return motion(chain, q, size)
 
 
 def place_jacobian(chain: Chain, x: Array, size: float) -> Array:
     """∂p/∂x (n, 3, s) [size] at x: (n, s) [rad | size]."""
-    z, o, _, p = _frames(chain, x, size)
-    jacobian: Array = np.where(chain.revolute[:, None, None], _cross(z, (p - o) / size), z)
-    return jacobian
+    return _motion(chain, x, size).linear
 
 
 def offsets(chain: Chain, T: Array, x: Array, size: float) -> Array:
     """p - t (3, s) [size] at x: (n, s) [rad | size], for targets T: (4, 3, s) [m]."""
-    away: Array = (_frames(chain, x, size)[3] - T[3]) / size
+    away: Array = (_motion(chain, x, size).tool[3] - T[3]) / size
     return away
-
-
-def _cross(u: Array, v: Array) -> Array:
-    """u × v of (..., 3, s), the components next to last."""
-    return u[..., TURNED, :] * v[..., TURNED_BACK, :] - u[..., TURNED_BACK, :] * v[..., TURNED, :]
-
-
-TURNED, TURNED_BACK = [1, 2, 0], [2, 0, 1]
 
 
 def _dot(u: Array, v: Array) -> Array:

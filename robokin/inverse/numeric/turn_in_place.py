@@ -19,6 +19,7 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.inverse.numeric.position_first import DescentEnds, Ways
 from robokin.inverse.numeric.second_order import offsets, place_jacobian, slope
+from robokin.kernel.damped_newton import held_at, limited
 
 HAS_POSITION = 1e-11
 """Distance [size] up to which a configuration has the position."""
@@ -94,8 +95,7 @@ def _step(ways: Ways, T: Array, x: Array, low: Array, high: Array) -> Array:
     slopes = np.einsum("sij,si->sj", V, np.einsum("sij,sj->si", null, here.gradient.T))
     along = np.where(np.abs(slopes) > 0.0, -slopes / np.maximum(np.abs(curvature), FLAT), 0.0)
     step = np.einsum("sij,sj->si", V, along)
-    step *= (LONGEST / np.maximum(np.max(np.abs(step), axis=1), LONGEST))[:, None]
-    return np.asarray(step.T)
+    return limited(step, LONGEST).T
 
 
 def _null(J: Array, g: Array) -> tuple[Array, Array]:
@@ -115,7 +115,7 @@ def _back(ways: Ways, T: Array, x: Array, low: Array, high: Array) -> Array:
         e = offsets(ways.chain, T, x, ways.size).T
         J = place_jacobian(ways.chain, x, ways.size).transpose(2, 1, 0)
         uphill = np.einsum("sij,si->sj", J, e)
-        held = ((x <= low).T & (uphill > 0.0)) | ((x >= high).T & (uphill < 0.0))
+        held = held_at(x, low, high, -uphill.T).T
         U, values, Vt = np.linalg.svd(np.where(held[:, None], 0.0, J), full_matrices=False)
         rank = values > RANK
         along = np.einsum("sij,si->sj", U, e) * np.where(rank, 1.0 / np.where(rank, values, 1.0), 0.0)

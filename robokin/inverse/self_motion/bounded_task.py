@@ -16,9 +16,9 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis
-from robokin.inverse.elimination.padding import joint_frames_of
 from robokin.inverse.self_motion.null_motion import CLOSES, SETTLED, errors, scale_of
 from robokin.inverse.verify import Found, wrapped
+from robokin.kernel.frames import pose
 from robokin.model.robot import LIMIT_TOLERANCE
 from robokin.spatial import nearest_rotation
 
@@ -68,7 +68,7 @@ class BoundedTask:
         T = self.T[index].copy()
         if not self.analysis.open:
             return T
-        R = joint_frames_of(self.chain, x * self.scale)[:, -1, :3, :3]
+        R = pose(self.chain, x * self.scale)[:, :3, :3]
         if self.analysis.open == 1:
             # The z axis is the task's; x stays as near to where it is as that allows.
             z = T[:, :3, 2]

@@ -18,7 +18,6 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.closed_form.spherical_wrist import SphericalTriple
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.self_motion.curve_tracing import Curve
 from robokin.inverse.self_motion.nearest_member import members_near, nearest_on_each
 from robokin.inverse.self_motion.null_motion import ZERO, errors
@@ -26,6 +25,7 @@ from robokin.inverse.self_motion.solution_sets import families
 from robokin.inverse.verify import CLOSES, Found, with_ones_within, within_limits
 from robokin.inverse.window import least_singular_values
 from robokin.kernel.chain import Chain
+from robokin.kernel.residual import error_and_jacobian
 
 TURN = 2.0 * np.pi
 

@@ -19,13 +19,13 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.numeric.least_squares import descend
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.self_motion.curve_crossings import crossings
 from robokin.inverse.self_motion.curve_tracing import Curve
 from robokin.inverse.self_motion.members import SelfMotion, listed_once
 from robokin.inverse.self_motion.solution_sets import families, on_curve, turned_gap
 from robokin.inverse.verify import CLOSES, Found, merged
 from robokin.kernel.chain import Chain
+from robokin.kernel.residual import error_and_jacobian
 
 ROUNDS = 4
 """How often curves are followed from crossings with known ones: a curve that is three crossings away is rare."""

@@ -25,14 +25,14 @@ Here x are joint values [rad | size] and lengths are in the arm's size.
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 
 import numpy as np
 
 from robokin.arrays import Array, Flags
 from robokin.inverse.numeric.nearest import few_joints
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.kernel.chain import Chain
+from robokin.kernel.damped_newton import limited
+from robokin.kernel.residual import error_and_jacobian
 
 ZERO = 1e-5
 """Singular values of the Jacobian (lengths in sizes) below this are zero. Newton's method stops some 1e-8 to 1e-6
@@ -167,8 +167,7 @@ def corrected(
         A[:, 6:] = normals[rows]
     factor, idle = np.ones(len(rows)), np.zeros(len(rows), dtype=np.intp)
     for _ in range(steps):
-        dx = least_squares(A, b, zero)
-        dx *= (LONGEST / np.maximum(np.max(np.abs(dx), axis=1), LONGEST))[:, None]
+        dx = limited(least_squares(A, b, zero), LONGEST)
         new = here + dx * factor[:, None]
         e_new, J_new = errors(chain, target, new, size)
         after = np.max(np.abs(e_new), axis=1)
@@ -208,14 +207,8 @@ def brackets(J: Array) -> Array:
         linear = wa_i * v_j[..., b, :, :] - wb_i * v_j[..., a, :, :]
         linear += v_i[..., a, :, :] * wb_j - v_i[..., b, :, :] * wa_j
         whole[..., k], whole[..., 3 + k] = linear, wa_i * wb_j - wb_i * wa_j
-    whole *= _upper(n)
+    whole *= np.triu(np.ones((n, n)), 1)[:, :, None]
     return whole
-
-
-@lru_cache(maxsize=16)
-def _upper(n: int) -> Array:
-    """(n, n, 1) one for i < j, zero elsewhere. Kept."""
-    return np.triu(np.ones((n, n)), 1)[:, :, None]
 
 
 def second_order(J: Array, null: Array, left: Array) -> Array:

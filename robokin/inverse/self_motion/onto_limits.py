@@ -14,11 +14,11 @@ import numpy as np
 from robokin.arrays import Array, Flags
 from robokin.inverse.analysis import Analysis
 from robokin.inverse.numeric.closing import DONE, EXACT_STEPS, newton_within
-from robokin.inverse.numeric.pose_error import error_and_jacobian
 from robokin.inverse.self_motion.members import NEIGHBOURS, UNRESOLVED
 from robokin.inverse.self_motion.null_motion import corrected
 from robokin.inverse.verify import Found, wrapped
 from robokin.inverse.window import least_singular_values
+from robokin.kernel.residual import error_and_jacobian
 
 BESIDE = 1e-5
 """A solution that is outside the limits by no more [rad | size] may stand for others that are inside: two that nearly

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.inverse.elimination.padding import joint_frames_of
 from robokin.kernel.chain import Chain
+from robokin.kernel.frames import frames
 
 NEARLY = 0.01
 """Sine of an angle, or a distance in the arm's size, below which axes count as parallel or as meeting: calibration
@@ -24,7 +24,7 @@ class Axes:
     """
 
     def __init__(self, chain: Chain, q: Array, size: float) -> None:
-        F = joint_frames_of(chain, q)
+        F = frames(chain, q)
         self.z, self.o = F[:, :-1, :3, 2], F[:, :-1, :3, 3] / size
         self.x = F[:, :-1, :3, 0]
         self.tip = F[:, -1, :3, 3] / size
@@ -71,12 +71,15 @@ class Axes:
 
 
 def nearest_point(z0: Array, o0: Array, z1: Array, o1: Array) -> Array:
-    """The points (s, 3) of second lines nearest to first ones; z: (s, 3) directions, o: (s, 3) points on the lines."""
+    """The points (..., 3) of second lines nearest to first ones, which are not parallel to them.
+
+    z: (..., 3) directions, o: (..., 3) points on the lines.
+    """
     normal = np.cross(z0, z1)
-    along = dot(np.cross(o1 - o0, z0), normal) / dot(normal, normal)
-    return np.asarray(o1 + along[:, None] * z1)
+    along = dot(np.cross(o1 - o0, z0), normal) / np.maximum(dot(normal, normal), np.finfo(float).tiny)
+    return np.asarray(o1 + along[..., None] * z1)
 
 
 def dot(a: Array, b: Array) -> Array:
-    """Products (s,) of vectors (s, 3)."""
-    return np.asarray(np.einsum("si,si->s", a, b))
+    """Products (...) of vectors (..., 3)."""
+    return np.asarray(np.einsum("...i,...i->...", a, b))

@@ -1,7 +1,7 @@
 """Vectors and matrices whose entries are numbers or columns.
 
-A block of m targets turns only some entries of a transform into arrays (m,); what is the same for the
-whole block stays a plain float. Sums and products of entries leave out what a 0 or ±1 spares, so an arm
+A block of m configurations or targets turns only some entries of a transform into arrays (m,); what is the same for
+the whole block stays a plain float. Sums and products of entries leave out what a 0 or ±1 spares, so an arm
 of right angles costs less than a general one and no arm needs code of its own. Branches (two elbows, two
 wrists) are new axes in front, (2, m), (2, 2, m), …, and broadcast.
 """
@@ -90,6 +90,37 @@ def minus(a: Entry, b: Entry) -> Entry:
     if isinstance(a, float) and a == 0.0:
         return -b
     return a - b
+
+
+def increased(total: Entry, number: float, entry: Entry) -> Entry:
+    """total + number · entry."""
+    if isinstance(entry, float):
+        return plus(total, number * entry) if entry else total
+    if isinstance(total, float) and total == 0.0:
+        return times(number, entry)
+    if number == 1.0:
+        return total + entry
+    if number == -1.0:
+        return total - entry
+    return total + number * entry if number else total
+
+
+def turned(c: Entry, u: Entry, s: Entry, v: Entry) -> Entry:
+    """c u + s v."""
+    if isinstance(u, float) or isinstance(v, float):
+        return plus(times(c, u), times(s, v))
+    product = c * u
+    product += s * v
+    return product
+
+
+def turned_back(c: Entry, u: Entry, s: Entry, v: Entry) -> Entry:
+    """c u - s v."""
+    if isinstance(u, float) or isinstance(v, float):
+        return minus(times(c, u), times(s, v))
+    product = c * u
+    product -= s * v
+    return product
 
 
 def dot(u: Vector, v: Vector) -> Entry:

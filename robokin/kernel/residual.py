@@ -1,10 +1,10 @@
-"""Error and Jacobian of a chain for many configurations at once, be they a handful or some thousands.
+"""What a chain's pose lacks of a target, and how that changes with the joint values.
 
-Statement. Give the difference of the poses of a chain from targets, and how it changes with the joint values.
+Statement. Give the difference of the poses of a chain from targets, and the Jacobian there, for one configuration, a
+handful or some thousands.
 Derivation. A joint and the constant after it, J(q) C, are linear in (1, cos q, sin q, q): all joints' matrices come
 from one product, and n products of matrices (4, 4) follow. For ten configurations the interpreter's share of the work
-is what counts. For hundreds a joint mixes two columns of the frame before it, and the constant after it all four, of
-all configurations at once: one product of matrices (4, 4) and (4, 3 s).
+is what counts. For hundreds all go through the chain at once (`sweep`).
 With the columns r_k of the rotation that is found and t_k of the one that is wished for the vector of the skew part of
 their difference is ½ Σ r_k × t_k.
 Degenerate case. None.
@@ -12,12 +12,15 @@ Degenerate case. None.
 
 from __future__ import annotations
 
-from weakref import WeakKeyDictionary
-
 import numpy as np
 
-from robokin.arrays import Array
+from robokin.arrays import Array, Index
 from robokin.kernel.chain import Chain
+from robokin.kernel.columns import BLOCK
+from robokin.kernel.facts import fact
+from robokin.kernel.frames import program_to_tool
+from robokin.kernel.geometric_jacobian import CROSS
+from robokin.kernel.sweep import sweep
 
 FEW = 80
 """Configurations up to which a product of matrices for each takes less time."""
@@ -25,36 +28,33 @@ FEW = 80
 TOGETHER = 1000
 """Configurations at a time: their numbers stay in the second-level cache."""
 
-CROSS = ((1, 2), (2, 0), (0, 1))
-"""Entry k of a × b is a[i] b[j] - a[j] b[i]."""
-
 HALF_TURN = 1e-9
 """Sine of the angle error below which, with a negative cosine, the error is half a turn and has no direction here."""
 
-_parts: WeakKeyDictionary[Chain, Array] = WeakKeyDictionary()
 
-
+@fact
 def _joint_parts(chain: Chain) -> Array:
-    """(n, 4, 16) the entries of J(q) C as multiples of 1, cos, sin and q. Kept."""
-    parts = _parts.get(chain)
-    if parts is None:
-        one, cosine, sine, slide = (np.zeros((chain.n, 4, 4)) for _ in range(4))
-        turns = chain.revolute.astype(np.float64)
-        one[:, (2, 3), (2, 3)] = 1.0
-        one[:, (0, 1), (0, 1)] = 1.0 - turns[:, None]
-        cosine[:, (0, 1), (0, 1)] = turns[:, None]
-        sine[:, 0, 1], sine[:, 1, 0] = -turns, turns
-        slide[:, 2, 3] = 1.0 - turns
-        matrices = np.stack([one, cosine, sine, slide], axis=1) @ chain.constants[1:, None]
-        parts = _parts[chain] = np.ascontiguousarray(matrices.reshape(chain.n, 4, 16))
-    return parts
+    """(n, 4, 16) the entries of J(q) C as multiples of 1, cos, sin and q."""
+    one, cosine, sine, slide = (np.zeros((chain.n, 4, 4)) for _ in range(4))
+    turns = chain.revolute.astype(np.float64)
+    one[:, (2, 3), (2, 3)] = 1.0
+    one[:, (0, 1), (0, 1)] = 1.0 - turns[:, None]
+    cosine[:, (0, 1), (0, 1)] = turns[:, None]
+    sine[:, 0, 1], sine[:, 1, 0] = -turns, turns
+    slide[:, 2, 3] = 1.0 - turns
+    matrices = np.stack([one, cosine, sine, slide], axis=1) @ chain.constants[1:, None]
+    return np.ascontiguousarray(matrices.reshape(chain.n, 4, 16))
 
 
 def error_and_jacobian(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
-    """The error (s, 6) of the poses at q (s, n) [rad | m] against T (s, 4, 4), and the Jacobian (s, 6, n).
+    """The error (..., 6) of the poses at q (..., n) [rad | m] against T (..., 4, 4), and the Jacobian (..., 6, n).
 
-    Lengths, also those of prismatic joints, are in sizes.
+    Lengths, also those of prismatic joints, are in sizes; both are in the base's axes.
     """
+    if q.ndim != 2:
+        before = q.shape[:-1]
+        e, J = error_and_jacobian(chain, T.reshape(-1, 4, 4), q.reshape(-1, chain.n), size)
+        return e.reshape(*before, 6), J.reshape(*before, 6, chain.n)
     if len(q) <= FEW:
         return _of_few(chain, T, q, size)
     starts = range(0, len(q), TOGETHER)
@@ -91,36 +91,20 @@ def _of_few(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array
 
 def _of_many(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
     """`error_and_jacobian`, by a product of matrices for each joint."""
-    s, n = q.shape
-    constants, revolute = chain.constants.transpose(0, 2, 1), chain.revolute.tolist()
-    values = (q + chain.offsets).T
-    cosine, sine = np.cos(values), np.sin(values)
-    X = np.empty((4, 3, s))
-    X[:] = constants[0, :, :3, None]
-    axes, turned = np.empty((2, 3, n, s)), np.empty((2, 3, s))
-    for i, turns in enumerate(revolute):
-        axes[:, :, i] = X[2:]
-        if turns:
-            np.multiply(X[:2], cosine[i], out=turned)
-            X[:2] *= sine[i]
-            turned[0] += X[1]
-            turned[1] -= X[0]
-            X[:2] = turned
-        else:
-            X[3] += values[i] * X[2]
-        X = (constants[i + 1] @ X.reshape(4, 3 * s)).reshape(4, 3, s)
-    z, lever = axes
-    np.subtract(X[3][:, None], lever, out=lever)
+    (z, o), end = sweep(
+        chain.constants[1:], chain.revolute, np.ascontiguousarray((q + chain.offsets).T), chain.constants[0]
+    )
+    z, lever = z.transpose(1, 0, 2), (end[3] - o).transpose(1, 0, 2)
     lever /= size
-    J = np.empty((6, n, s))
+    J = np.empty((6, *z.shape[1:]))
     for k, (a, b) in enumerate(CROSS):
         np.multiply(z[a], lever[b], out=J[k])
         J[k] -= z[b] * lever[a]
     J[3:] = z
-    if not all(revolute):
+    if not chain.revolute.all():
         slides = ~chain.revolute
         J[:3, slides], J[3:, slides] = z[:, slides], 0.0
-    return _pose_error(T, X, size), np.ascontiguousarray(J.transpose(2, 0, 1))
+    return _pose_error(T, end, size), np.ascontiguousarray(J.transpose(2, 0, 1))
 
 
 def pose_error(T: Array, found: Array, size: float) -> Array:
@@ -144,3 +128,33 @@ def _pose_error(T: Array, X: Array, size: float) -> Array:
     if stuck.any():
         w[:, stuck] = np.array([np.pi, 0.0, 0.0])[:, None]
     return np.ascontiguousarray(e.T)
+
+
+class TargetPoses:
+    """Forward kinematics of a chain (base, joints, virtual joints, tool) against a block of targets."""
+
+    def __init__(self, chain: Chain, T: Array) -> None:
+        self.program = program_to_tool(chain)
+        # The twelve entries of each target, column by column, as the program gives them.
+        self.targets = np.ascontiguousarray(T[:, :3].transpose(2, 1, 0)).reshape(12, -1)
+
+    def residuals(self, index: Index, q: Array) -> tuple[Array, Array]:
+        """Distances (s,) [m] and angles (s,) [rad] of the poses at q (n, s) from the targets index (s,).
+
+        The angle comes from the chord |R_a - R_b| = 2 √2 sin(angle / 2), which keeps all digits of small
+        ones; up to 1e-8 it is chord / √2 to the last digit, and beyond that its size does not matter here.
+        """
+        position, angle = np.empty(len(index)), np.empty(len(index))
+        off = np.empty((12, min(BLOCK, len(index))))
+        for start in range(0, len(index), BLOCK):
+            part = slice(start, start + BLOCK)
+            block = off[:, : len(index[part])]
+            self.targets.take(index[part], axis=1, out=block, mode="clip")
+            (frame,) = self.program.columns(q[:, part])
+            for row, entry in zip(block, (entry for column in frame for entry in column), strict=True):
+                row -= entry
+            block *= block
+            block[:9].sum(axis=0, out=angle[part])
+            block[9:].sum(axis=0, out=position[part])
+        angle *= 0.5
+        return np.sqrt(position, out=position), np.sqrt(angle, out=angle)
