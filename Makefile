@@ -14,7 +14,7 @@ WORKERS ?= $(shell $(PYTHON) -c 'import os; n = len(os.sched_getaffinity(0)) if 
 PYTEST  := python -m pytest --quiet --numprocesses $(WORKERS) --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-oldest test-newest lint fuzz bench completeness coverage wheel audit docs lock clean
+.PHONY: help demo test test-slow test-oldest test-newest lint fuzz bench completeness coverage wheel audit docs lock clean
 
 help:            ## what can be made
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
@@ -37,8 +37,11 @@ $(VENV)/release: $(VENV)/dev .ci/requirements/release.txt
 demo: $(VENV)/user ## install, and the pose of the PUMA 560
 	$(BIN)/robokin fk puma560 --q home
 
-test: $(VENV)/dev ## the tests
-	$(BIN)/$(PYTEST)
+test: $(VENV)/dev ## the tests, without the slow laws: four minutes on two cores
+	$(BIN)/$(PYTEST) -m 'not slow'
+
+test-slow: $(VENV)/dev ## the slow laws: whole sweeps over the library and over random arms
+	$(BIN)/$(PYTEST) -m slow
 
 $(VENV)-oldest/installed: .ci/requirements/oldest.txt pyproject.toml
 	$(PYTHON) -m venv $(VENV)-oldest

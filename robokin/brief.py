@@ -29,7 +29,10 @@ class Answer(Brief):
     """The answer to a question that the command line can ask too."""
 
     def record(self, units: Units | None = None) -> Any:
-        """The document that the command prints with --json, in the units (by default the description's)."""
+        """The document that the command prints with --json, in the units (by default the description's).
+
+        Raises InputTypeError where `units` are none.
+        """
         import robokin  # the package's own face: documents are made in a room above this one
 
         return robokin.documents.document_of(self, units)

@@ -79,7 +79,7 @@ def expect_units(value: object) -> Units:
 
 
 def show(entry: Robot | Mechanism | WheeledBase, units: Units | None = None) -> Document:
-    """What `robokin show` says of a robot, a mechanism or a wheeled base."""
+    """What `robokin show` says of a robot, a mechanism or a wheeled base. Raises InputTypeError."""
     from robokin.records.description_records import described_record
 
     if not isinstance(entry, Robot | Mechanism | WheeledBase):
@@ -98,7 +98,7 @@ def library() -> list[Document]:
 
 
 def validate(file: str | File) -> Document:
-    """What `robokin validate` says of a file, or of a name of the library."""
+    """What `robokin validate` says of a file, or of a name of the library. Raises InputTypeError."""
     from robokin.records.description_records import file_record, verdict_of
 
     if not isinstance(file, str | File):
@@ -111,7 +111,7 @@ def fk(
 ) -> Any:
     """What `robokin fk` says of joint values q: (n,) [rad | m], or a list of documents for (m, n).
 
-    `frames` adds the frame after each row of the table, `orientation` another form of the rotation.
+    `frames` adds the frame after each row of the table, `orientation` another form of the rotation. Raises InputError.
     """
     from robokin.kinematics.forward import forward_kinematics, joint_values, row_frames
     from robokin.records.pose_records import PoseBlock, configuration_records, poses_in
@@ -135,7 +135,7 @@ def fk(
 def ik(robot: Robot, T: ArrayLike, units: Units | None = None, explain: bool = False, **options: Any) -> Any:
     """What `robokin ik` says of a target T: (4, 4) [m], or a list of documents for (m, 4, 4).
 
-    `explain` adds the steps of the closed form; `options` are those of `robokin.solve_ik`.
+    `explain` adds the steps of the closed form; `options` are those of `robokin.solve_ik`. Raises InputError.
     """
     from robokin.inverse.solve import solve_ik
 
@@ -150,7 +150,10 @@ def jacobian(
     task: TaskName | None = None,
     units: Units | None = None,
 ) -> Any:
-    """What `robokin jacobian` says of joint values q: (n,) [rad | m], or a list of documents for (m, n)."""
+    """What `robokin jacobian` says of joint values q: (n,) [rad | m], or a list of documents for (m, n).
+
+    Raises InputError.
+    """
     from robokin.kinematics.velocity import differential_kinematics
 
     found = differential_kinematics(robot, q, frame, task)
@@ -158,7 +161,7 @@ def jacobian(
 
 
 def singular(robot: Robot, task: TaskName | None = None, units: Units | None = None) -> Document:
-    """What `robokin singular` says of a robot."""
+    """What `robokin singular` says of a robot. Raises InputError for one without joints."""
     from robokin.kinematics.singular import singular_configurations
     from robokin.records.singularity_records import singular_record
 
@@ -167,7 +170,7 @@ def singular(robot: Robot, task: TaskName | None = None, units: Units | None = N
 
 
 def dof(entry: Robot | Mechanism | WheeledBase, units: Units | None = None) -> Document:
-    """What `robokin dof` says of a robot, a mechanism or a wheeled base."""
+    """What `robokin dof` says of a robot, a mechanism or a wheeled base. Raises InputTypeError."""
     if isinstance(entry, Robot):
         from robokin.records.freedom_records import robot_record
 
@@ -182,14 +185,17 @@ def dof(entry: Robot | Mechanism | WheeledBase, units: Units | None = None) -> D
 
 
 def workspace(robot: Robot, units: Units | None = None, **options: Any) -> Document:
-    """What `robokin workspace` says of a robot; `options` are those of `robokin.analyse_workspace`."""
+    """What `robokin workspace` says of a robot; `options` are those of `robokin.analyse_workspace`.
+
+    Raises InputError.
+    """
     from robokin.workspace.analyse import analyse_workspace
 
     return cast(Document, document_of(analyse_workspace(robot, **options), units))
 
 
 def place(robot: Robot, point: ArrayLike, seed: int = 0, units: Units | None = None) -> Document:
-    """What `robokin workspace --at` says of a point: (3,) [m]."""
+    """What `robokin workspace --at` says of a point: (3,) [m]. Raises InputError."""
     from robokin.records.workspace_records import place_record
     from robokin.workspace.place import at_point
     from robokin.workspace.space import space_of
@@ -201,7 +207,10 @@ def place(robot: Robot, point: ArrayLike, seed: int = 0, units: Units | None = N
 
 
 def frame(expression: str, units: Units | None = None) -> Document:
-    """What `robokin frame` says of a transform expression in the units (by default metres and degrees)."""
+    """What `robokin frame` says of a transform expression in the units (by default metres and degrees).
+
+    Raises ExpressionError for what cannot be read, InputError for a result that is too far away for a number.
+    """
     from robokin.formats.number_expressions import Scope
     from robokin.formats.transform_expressions import evaluate_transform
     from robokin.records.envelope import envelope
@@ -219,7 +228,10 @@ def frame(expression: str, units: Units | None = None) -> Document:
 def plot(
     what: Robot | Mechanism | Result, q: ArrayLike | None = None, frames: bool = False, units: Units | None = None
 ) -> Document:
-    """What `robokin plot` says of a robot at q: (n,) or (m, n) [rad | m], of solutions, or of a mechanism."""
+    """What `robokin plot` says of a robot at q: (n,) or (m, n) [rad | m], of solutions, or of a mechanism.
+
+    Raises InputError.
+    """
     own = None if units is None else expect_units(units)
     if isinstance(what, Mechanism):
         from robokin.pictures.drawn_mechanism import check_drawable
@@ -237,7 +249,7 @@ def plot(
 
 
 def schema(command: str, check: str | None = None) -> Document:
-    """The JSON Schema of a command's documents, as `robokin schema COMMAND` prints it."""
+    """The JSON Schema of a command's documents, as `robokin schema COMMAND` prints it. Raises InputError."""
     from robokin.records.schemas import document_schema
 
     expect_kind(command, str, "command", "a command's name, such as 'fk'")

@@ -73,7 +73,10 @@ class MatrixView:
 
 
 def matrix(values: ArrayLike) -> MatrixView:
-    """A matrix (m, n), such as a pose or a Jacobian, to be shown in a notebook with at most six decimals."""
+    """A matrix, values: (m, n), such as a pose or a Jacobian, shown in a notebook with at most six decimals.
+
+    Raises InputError for another shape.
+    """
     array: Array = expect_numbers(values, "values", "a matrix (m, n) of numbers")
     if array.ndim != 2:
         raise InputError(f"values: found an array of shape {array.shape}, expected a matrix (m, n)")

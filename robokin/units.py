@@ -45,7 +45,7 @@ class Units:
         return self.angle == "deg"
 
     def override(self, length: str | None = None, angle: str | None = None) -> Units:
-        """These units with the given ones in place of their own."""
+        """These units with the given ones in place of their own. Raises InputError for what is no unit."""
         return replace(self, length=length or self.length, angle=angle or self.angle)
 
     def as_record(self) -> dict[str, str]:

@@ -1,7 +1,8 @@
 """What the pages show: find the console blocks, run them, compare, and rewrite them.
 
-`make docs` runs this file. It writes a page for each command that has none, the list of commands in docs/README.md,
-and in README.md and docs/ what each command prints today, wherever that is not what the page shows.
+`make docs` runs this file. It writes a page for each command that has none, the list of commands in docs/README.md, the
+reference of the public names (docs/api.md), and in README.md and docs/ what each command prints today, wherever that is
+not what the page shows.
 
 A console block holds commands after `$ ` (further lines of one after `> `) and what they print. The blocks of a page
 run from top to bottom in one folder of their own, so what a command writes is there for the next one. The folder is
@@ -23,6 +24,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
+
+import api_reference
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -201,6 +204,7 @@ def main() -> None:
         page = command_page(name)
         page.parent.mkdir(exist_ok=True)
         page.write_text(with_title(page.read_text() if page.exists() else new_command_page(name, line), name, line))
+    api_reference.PAGE.write_text(api_reference.page())
     wanted = [(ROOT / name).resolve() for name in sys.argv[1:]]
     for page in pages():
         if wanted and page not in wanted:

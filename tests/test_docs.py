@@ -21,7 +21,13 @@ def name_of(page):
     return str(page.relative_to(ROOT))
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name_of)
+LONG = {DOCS / "shell.md", DOCS / "commands" / "workspace.md"}
+"""Pages whose commands take seconds."""
+
+
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, marks=[pytest.mark.slow] if page in LONG else []) for page in PAGES], ids=name_of
+)
 def test_commands_print_what_is_shown(page, tmp_path, monkeypatch):
     documentation.lay_out(page, tmp_path)
     monkeypatch.chdir(tmp_path)
@@ -177,3 +183,58 @@ def test_make_docs_has_nothing_to_do_on_a_true_page(monkeypatch, capsys):
     documentation.main()
     assert capsys.readouterr().out == ""
     assert page.read_text() == before
+
+
+# The pages for who changes the code -----------------------------------------------------------------------------
+
+FOR_CHANGES = [ROOT / "CONTRIBUTING.md", DOCS / "architecture.md"]
+PLACE = re.compile(r"(?<![\w./])(?:robokin|robots|tests|docs|benchmarks|\.ci)/[\w./-]*\w|\.pre-commit[\w.-]+\w")
+"""A file or a folder of the checkout."""
+
+
+@pytest.mark.parametrize("page", FOR_CHANGES, ids=name_of)
+def test_every_place_that_is_named_is_there(page):
+    named = [place for place in PLACE.findall(page.read_text()) if "NAME" not in place]
+    assert len(named) > 20
+    assert [place for place in named if not (ROOT / place).exists()] == []
+
+
+@pytest.mark.parametrize("page", FOR_CHANGES, ids=name_of)
+def test_every_target_that_is_named_is_in_the_makefile(page):
+    targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M)
+    named = re.findall(r"(?:`|^)make ([a-z-]+)", page.read_text(), re.M)
+    assert named
+    assert set(named) <= set(targets)
+
+
+def test_links_of_the_page_at_the_top_lead_somewhere():
+    for target in re.findall(r"\]\(([^)#]+)\)", FOR_CHANGES[0].read_text()):
+        assert (ROOT / target).exists(), target
+
+
+def test_ten_questions_have_a_place_each():
+    rows = re.findall(r"^\| (Where [^|]+\?) \| `([^`]+)` \|$", FOR_CHANGES[1].read_text(), re.M)
+    assert len(rows) == 10
+    assert all((ROOT / place).is_file() for _, place in rows)
+
+
+def test_every_room_is_on_the_map():
+    text = FOR_CHANGES[1].read_text()
+    rooms = {path.parent.name for path in (ROOT / "robokin").glob("*/__init__.py")}
+    assert {room for room in rooms if f"`robokin/{room}/`" not in text} == set()
+
+
+def test_what_is_looked_at_with_a_commit_is_what_lint_looks_at():
+    (local,) = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text())["repos"]
+    entries = {" ".join(hook["entry"].split()[:2]) for hook in local["hooks"]}
+    assert entries == {".venv/bin/ruff check", ".venv/bin/ruff format", ".venv/bin/mypy"}
+    recipe = re.search(r"^lint:.*\n((?:\t.*\n)+)", (ROOT / "Makefile").read_text(), re.M)[1]
+    assert re.findall(r"\$\(BIN\)/(\w+(?: check| format)?)", recipe) == ["ruff check", "ruff format", "mypy"]
+
+
+def test_a_change_lands_after_all_tests():
+    """What `make test` leaves out is what `make test-slow` runs."""
+    targets = re.search(r"^for target in (.*)$", (ROOT / ".ci" / "run").read_text(), re.M)[1].split()
+    assert {"lint", "test", "test-slow"} <= set(targets)
+    marks = re.findall(r"\$\(PYTEST\) -m (.*)$", (ROOT / "Makefile").read_text(), re.M)
+    assert marks == ["'not slow'", "slow"]

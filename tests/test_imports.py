@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -39,9 +40,15 @@ def modules():
     return sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
 
 
+@cache
+def nodes(path):
+    """Everything that a module is made of."""
+    return [*ast.walk(ast.parse((PACKAGE / path).read_text()))]
+
+
 def imported(path):
     """Dotted names of everything a module imports, also inside functions."""
-    for node in ast.walk(ast.parse((PACKAGE / path).read_text())):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -73,7 +80,7 @@ def file_imports():
     names = {".".join(["robokin", *path.with_suffix("").parts]).removesuffix(".__init__"): path for path in modules()}
     found = {name: set() for name in names}
     for own, path in names.items():
-        for node in ast.walk(ast.parse((PACKAGE / path).read_text())):
+        for node in nodes(path):
             if isinstance(node, ast.ImportFrom):
                 for alias in node.names:
                     whole = f"{node.module}.{alias.name}"
@@ -97,7 +104,7 @@ def test_no_two_modules_and_no_two_classes_have_one_name():
     for path in modules():
         if path.name not in ONE_NAME_EACH:
             files.setdefault(path.name, []).append(path)
-        for node in ast.walk(ast.parse((PACKAGE / path).read_text())):
+        for node in nodes(path):
             if isinstance(node, ast.ClassDef):
                 classes.setdefault(node.name, []).append(path)
     assert not {name: paths for name, paths in {**files, **classes}.items() if len(paths) > 1}

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 from conftest import data
+from library_entries import names_of
 from vendor_urdf import Urdf, figures
 
 import robokin
-from robokin.formats import library_names, load_any
 from robokin.model import Robot
 
 VENDORS = data("vendors.json")
@@ -65,7 +65,7 @@ def test_every_figure_has_its_source():
 
 @pytest.mark.parametrize(
     "name",
-    [name for name in library_names() if isinstance(load_any(name), Robot) and load_any(name).n >= 6],
+    names_of(Robot, 6),
 )
 def test_z_points_out_of_the_flange(name):
     """ISO 9787: from the origin of the last link's frame to the flange, where these are two places."""

@@ -65,7 +65,7 @@ class TableToleranceOptions(OptionGroup):
 
     def over(self, default: Tolerance, units: Units) -> Tolerance:
         """A tolerance with what was stated in its place. Raises InputError."""
-        from robokin.cli.arguments import parse_numbers
+        from robokin.formats.vector_expressions import parse_numbers
 
         stated = {}
         for name, option_name, text, factor in (

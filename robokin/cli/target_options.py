@@ -8,40 +8,24 @@ from robokin.cli.option_groups import OptionGroup
 from robokin.cli.options import option
 from robokin.errors import InputError
 
-PoseOption = Annotated[str | None, option("--pose", "EXPR", "The target as a transform expression.")]
-MatrixOption = Annotated[str | None, option("--matrix", "[[..]]|FILE", "The target as a 4×4 matrix, or a file of one.")]
-XyzOption = Annotated[str | None, option("--xyz", "X,Y,Z", "The target's position; alone: any orientation.")]
-RpyOption = Annotated[str | None, option("--rpy", "R,P,Y", "With --xyz: roll, pitch, yaw.")]
-EulerOption = Annotated[str | None, option("--euler", "PHI,THETA,PSI", "With --xyz: ZYZ Euler angles.")]
-QuatOption = Annotated[str | None, option("--quat", "W,X,Y,Z", "With --xyz: a quaternion of length 1.")]
-ApproachOption = Annotated[str | None, option("--approach", "X,Y,Z", "With --xyz: the tool's z axis only, any roll.")]
-XyOption = Annotated[str | None, option("--xy", "X,Y", "The position for a planar arm.")]
-PhiOption = Annotated[str | None, option("--phi", "PHI", "With --xy: the angle of the end effector.")]
-
-
-def target_texts(
-    pose: str | None, matrix: str | None, xyz: str | None, rpy: str | None, euler: str | None, quat: str | None,
-    approach: str | None, xy: str | None, phi: str | None,
-) -> dict[str, str | None]:  # fmt: skip
-    """What was typed, by the options' names, as `parse_target` reads it."""
-    return {
-        "--pose": pose, "--matrix": matrix, "--xyz": xyz, "--rpy": rpy, "--euler": euler, "--quat": quat,
-        "--approach": approach, "--xy": xy, "--phi": phi,
-    }  # fmt: skip
-
 
 class TargetOptions(OptionGroup):
     """A target by one of --pose, --matrix, --xyz and --xy, and what goes with them."""
 
-    pose: PoseOption = None
-    matrix: MatrixOption = None
-    xyz: XyzOption = None
-    rpy: RpyOption = None
-    euler: EulerOption = None
-    quat: QuatOption = None
-    approach: ApproachOption = None
-    xy: XyOption = None
-    phi: PhiOption = None
+    pose: Annotated[str | None, option("--pose", "EXPR", "The target as a transform expression.")] = None
+    matrix: Annotated[
+        str | None, option("--matrix", "[[..]]|FILE", "The target as a 4×4 matrix, or a file of one.")
+    ] = None
+    xyz: Annotated[str | None, option("--xyz", "X,Y,Z", "The target's position; alone: any orientation.")] = None
+    rpy: Annotated[str | None, option("--rpy", "R,P,Y", "With --xyz: roll, pitch, yaw.")] = None
+    euler: Annotated[str | None, option("--euler", "PHI,THETA,PSI", "With --xyz: ZYZ Euler angles.")] = None
+    quat: Annotated[str | None, option("--quat", "W,X,Y,Z", "With --xyz: a quaternion of length 1.")] = None
+    approach: Annotated[
+        str | None,
+        option("--approach", "X,Y,Z", "With --xyz: the tool's z axis only, any roll."),
+    ] = None
+    xy: Annotated[str | None, option("--xy", "X,Y", "The position for a planar arm.")] = None
+    phi: Annotated[str | None, option("--phi", "PHI", "With --xy: the angle of the end effector.")] = None
 
     @property
     def texts(self) -> dict[str, str | None]:

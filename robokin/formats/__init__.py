@@ -52,7 +52,11 @@ def load(name_or_path: str | Path, **parameters: float | str) -> Robot:
 
 
 def load_mechanism(name_or_path: str | Path, **parameters: float | str) -> Mechanism:
-    """The mechanism with a library name ("four-bar") or in a file, as `load` has it of robots."""
+    """The mechanism with a library name ("four-bar") or in a file, as `load` has it of robots.
+
+    Raises InputError for an unknown name and for a file that cannot be read or is of something else, DescriptionError
+    with line and column for a wrong description.
+    """
     from robokin.model import Mechanism
 
     loaded = _loaded(name_or_path, parameters)
@@ -62,7 +66,11 @@ def load_mechanism(name_or_path: str | Path, **parameters: float | str) -> Mecha
 
 
 def load_wheeled(name_or_path: str | Path, **parameters: float | str) -> WheeledBase:
-    """The wheeled base with a library name ("differential-drive") or in a file, as `load` has it of robots."""
+    """The wheeled base with a library name ("differential-drive") or in a file, as `load` has it of robots.
+
+    Raises InputError for an unknown name and for a file that cannot be read or is of something else, DescriptionError
+    with line and column for a wrong description.
+    """
     from robokin.model import WheeledBase
 
     loaded = _loaded(name_or_path, parameters)

@@ -79,7 +79,7 @@ def check_solutions(
     task: Task = "pose",
     limits: bool = True,
 ) -> SetMark:
-    """The mark of several configurations, each (n,) [rad | m], as the set of all solutions for a target T: (4, 4) [m].
+    """The mark of configurations, answers: (k, n) [rad | m], as the set of all solutions for a target T: (4, 4) [m].
 
     By default the tolerance is that of `robokin check ik --all`. Raises InputError.
     """

@@ -62,7 +62,8 @@ def default_tolerance(robot: Robot, *, table: bool = False) -> Tolerance:
     """The tolerance for answers about a robot, or for its table, where none is stated.
 
     The length is the greatest of 1, 2 or 5 times a power of ten, in the description's own unit, that is no more
-    than its part of the arm's size: a number that can be said, and the same whatever units are asked for.
+    than its part of the arm's size: a number that can be said, and the same whatever units are asked for. Raises
+    InputTypeError for what is no robot.
     """
     robot, table = expect_robot(robot), expect_flag(table, "table")
     size = chain_size(chain_of(robot))

@@ -104,7 +104,10 @@ def time_law(t: ArrayLike) -> Array:
 def interpolate_joints(robot: Robot, start: ArrayLike, end: ArrayLike, steps: int = 100, limits: bool = True) -> Path:
     """All joints from `start` to `end` together, each value linear in s.
 
-    start, end: (n,) [rad | m]. With `limits` the path ends before a joint leaves them. Raises InputError.
+    start, end: (n,) [rad | m]. With `limits` the path ends before a joint leaves them. Raises InputError for other
+    shapes and for `steps` below 1.
+    Source of the time law s(t) = 10 t³ - 15 t⁴ + 6 t⁵: B. Siciliano et al., Robotics: Modelling, Planning and Control,
+    2009, section 4.2.
     """
     first, last = _configuration(robot, start, "start"), _configuration(robot, end, "end")
     t = _times(steps)
@@ -129,7 +132,8 @@ def follow_line(
 
     start: (n,) [rad | m]; T: (4, 4) [m]. `task` is what follows the line: the whole pose, or the position alone, as is
     taken for arms of up to three joints that place a point. The path ends where a joint leaves its limits (with
-    `limits`), where there is no solution, or where a joint would jump. Raises InputError.
+    `limits`), where there is no solution, or where a joint would jump. Raises InputError for other shapes, for what is
+    no pose and for `steps` below 1. The time law is that of `interpolate_joints`.
     """
     first, limits = _configuration(robot, start, "start"), expect_flag(limits, "limits")
     target = target_poses(T)

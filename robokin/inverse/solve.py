@@ -51,6 +51,10 @@ def solve_ik(
     ±360° equivalents of each solution within the limits. `hold` fixes joints (from 0) at values [rad | m]: the rest
     is solved as the arm that it then is, and `complete` is said of that.
     Returns a Result for one pose, a BatchResult for several. Raises InputError for what is no pose.
+    Source: D. L. Pieper, The kinematics of manipulators under computer control, 1968 (three axes through a point, three
+    parallel ones, three slides); M. Raghavan and B. Roth, Inverse kinematics of the general 6R manipulator and related
+    linkages, J. Mech. Des. 115, 1993 (any other); A. P. Morgan and A. J. Sommese, Coefficient-parameter polynomial
+    continuation, Appl. Math. Comput. 29, 1989 (that these are all).
     """
     poses = target_poses(T)
     alone = poses.ndim == 2

@@ -52,19 +52,10 @@ class Chain(Brief):
 
 @fact
 def chain_of(robot: Robot) -> Chain:
-    """The chain of a robot: base, rows and tool, constants between two joints multiplied out."""
-    constants = [robot.base]
-    for row in robot.rows:
-        before, after = row_constants(row, robot.convention)
-        constants[-1] = constants[-1] @ before
-        if row.moves:
-            constants.append(after)
-        else:
-            constants[-1] = constants[-1] @ after
-    constants[-1] = constants[-1] @ robot.tool
-    offsets = np.array([joint.offset for joint in robot.joints]) * robot.senses + 0.0  # no negative zeros
-    start = (invert(constants[0]) @ robot.base)[:3, 3]
-    return near_the_arm(Chain(np.stack([exact(C) for C in constants]), robot.revolute, offsets, start))
+    """The chain of a robot, from its base to its tool."""
+    part = robot.graph.chain("base", "tool")
+    start = (invert(part.constants[0]) @ part.base)[:3, 3]
+    return near_the_arm(Chain(np.stack([exact(C) for C in part.constants]), robot.revolute, part.offsets, start))
 
 
 @fact

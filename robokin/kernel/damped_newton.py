@@ -51,8 +51,8 @@ def brought_down(
         on = squared >= enough[rows]
         if not on.all():
             rows, x, e, J = rows[on], x[on], e[on], J[on]
-            if not len(rows):
-                break
+        if not len(rows):
+            break
     return best, left
 
 

@@ -26,10 +26,13 @@ def sweep(
     """
     n, s = q.shape
     axes = np.empty((2, n, 3, s), dtype=q.dtype)
-    X = np.empty((4, 3, s), dtype=q.dtype)
-    X[:] = (np.eye(4) if first is None else first)[:3].T[:, :, None]
+    X = np.zeros((4, 3, s), dtype=q.dtype)
+    if first is None:
+        X[(0, 1, 2), (0, 1, 2)] = 1.0
+    else:
+        X[:] = first[:3].T[:, :, None]
     # A slide's value may be so large that its cosine is no number.
-    angles = np.where(revolute[:, None], q, 0.0)
+    angles = q if revolute.all() else np.where(revolute[:, None], q, 0.0)
     c, sine = np.cos(angles), np.sin(angles)
     turned = np.empty((2, 3, s), dtype=q.dtype)
     for i, turns in enumerate(revolute.tolist()):

@@ -20,6 +20,8 @@ def forward_kinematics(robot: Robot, q: ArrayLike) -> Array:
 
     q: (..., n) joint values in file order [rad | m]. Returns (..., 4, 4) [m].
     NaN in a row of q gives NaN in its pose. Raises InputError when q has another length than n.
+    Source: J. Denavit and R. S. Hartenberg, A kinematic notation for lower-pair mechanisms based on matrices,
+    J. Applied Mechanics 22, 1955; modified tables as J. J. Craig, Introduction to Robotics, 1986, has them.
     """
     q = joint_values(robot, q)
     return pose(chain_of(robot), q)
@@ -31,6 +33,8 @@ def link_frames(robot: Robot, q: ArrayLike) -> Array:
     q: (..., n) joint values in file order [rad | m]. Returns (..., n + 1, 4, 4) [m]: frame 0 is the
     base's, frame k the one that the row of joint k leads to. Fixed rows extend the link that they
     follow, so that `link_frames(robot, q)[..., -1, :, :] @ robot.tool` is the tool's pose.
+    Raises InputError when q has another length than n.
+    Source: Denavit and Hartenberg 1955, Craig 1986, as for `forward_kinematics`.
     """
     q = joint_values(robot, q)
     return run(_row_program(robot, False), q)

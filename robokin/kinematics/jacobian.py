@@ -20,6 +20,7 @@ def jacobian(robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base"
     q: (..., n) [rad | m]. Returns (..., 6, n) [m/rad | 1, 1 | 0]. The twist is that of the tool's
     origin, in the axes of the world (`base`) or of the tool (`tool`). A revolute joint about z through
     o gives the column (z × (p - o), z), a prismatic one (z, 0).
+    Raises InputError when q has another length than n, and for another frame.
     Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, eq. (3.30).
     """
     expect_choice(frame, ("base", "tool"), "frame")

@@ -146,7 +146,9 @@ def differential_kinematics(
     """The Jacobian at q with its rank, singular values, manipulability and condition number.
 
     q: (..., n) [rad | m]; `frame` gives the axes of the Jacobian; `task` what counts of the twist: pose, position,
-    orientation, by itself as `motion_task` says. Raises InputError for a robot without joints.
+    orientation, by itself as `motion_task` says. Raises InputError for a robot without joints, for another shape of q
+    and for what is not finite.
+    Source: T. Yoshikawa, Manipulability of robotic mechanisms, Int. J. Robotics Research 4(2), 1985.
     """
     kind = motion_task(robot, task)
     q = expect_finite(q, "q", "finite joint values (..., n)")

@@ -93,7 +93,11 @@ class Manoeuvrability(Answer):
 
 
 def manoeuvrability_of(base: WheeledBase) -> Manoeuvrability:
-    """What the wheels let a base do, and what its motors command of that."""
+    """What the wheels let a base do, and what its motors command of that. Raises InputTypeError.
+
+    Source: G. Campion, G. Bastin, B. d'Andréa-Novel, Structural properties and classification of kinematic and dynamic
+    models of wheeled mobile robots, IEEE Trans. Robotics and Automation 12(1), 1996.
+    """
     base = expect_wheeled(base)
     frame = WheelFrame.of(base.wheels)
     rows = [sliding_row(frame, wheel, wheel.angle) for wheel in base.wheels if wheel.type == "fixed"]

@@ -76,8 +76,10 @@ class Mobility(Answer):
 def mobility_of(mechanism: Mechanism, between: tuple[str, str] | None = None, seed: int = 0) -> Mobility:
     """The mobility of a mechanism, counted and true; `between` two links (the moving one first) or its output.
 
-    Nothing hangs on the seed any more; it is taken as before. Raises InputError for links that are not the mechanism's,
-    and for axes that do not fit the mechanism's space.
+    `seed` has no influence on the answer. Raises InputError for links that are not the mechanism's, and for axes
+    that do not fit the mechanism's space.
+    Source: M. Grübler, Getriebelehre, 1917 (the count); C. W. Wampler, J. D. Hauenstein, A. J. Sommese, Mechanism
+    mobility and a local dimension test, Mech. Mach. Theory 46(9), 2011 (the mobility of the geometry).
     """
     mechanism, _ = expect_mechanism(mechanism), expect_whole(seed, "seed", 0)
     fault = space_fault(mechanism)

@@ -82,6 +82,10 @@ class Tip(Brief):
     link: int
     tool: Array = field(default_factory=lambda: np.eye(4))
 
+    def __post_init__(self) -> None:
+        """Make the tool read-only."""
+        object.__setattr__(self, "tool", read_only(self.tool))
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SerialChain(Brief):
@@ -197,7 +201,8 @@ class Graph(Brief):
         tips |= {one.name: (one.link, one.tool) for one in self.tips}
         for name, known in ((root, self.links), (tip, tips)):
             if name not in known:
-                raise InputError(f"found the unknown link '{shown(name)}'{did_you_mean(name, known)}")
+                hint = did_you_mean(name, known) or f", expected one of {', '.join([*known][:12])}"
+                raise InputError(f"found the unknown link '{shown(name)}'{hint}")
         first, (last, tool) = self.links.index(root), tips[tip]
         way: list[int] = []
         while last != first:

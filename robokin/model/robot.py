@@ -181,7 +181,10 @@ class Robot(Answer):
         return Graph(links, tuple(joints), base=self.base, tips=(Tip("tool", len(joints), self.tool),))
 
     def within_limits(self, q: ArrayLike) -> Flags:
-        """(...) whether each q: (..., n) [rad | m] respects every limit; limits are inclusive."""
+        """(...) whether each q: (..., n) [rad | m] respects every limit; limits are inclusive.
+
+        Raises InputError when q has another length than n.
+        """
         q = expect_numbers(q, "q", f"joint values: numbers in an array (..., {self.n})")
         if q.ndim == 0 or q.shape[-1] != self.n:
             raise InputError(

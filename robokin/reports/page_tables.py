@@ -125,9 +125,10 @@ def render(*parts: Table | Heading | str) -> bytes:
     terminal = sys.stdout is not None and sys.stdout.isatty()
     page = max(shutil.get_terminal_size((WIDTH, 24)).columns if terminal else WIDTH, 1)
     text = io.StringIO()
-    # Names come from files: what they say is text, never a style.
+    # Names come from files: what they say is text, never a style. Without a height Rich takes 80 columns on a terminal
+    # that calls itself dumb, and cuts what is wider.
     console = Console(
-        file=text, force_terminal=terminal, width=page, highlight=False, markup=False, emoji=False,
+        file=text, force_terminal=terminal, width=page, height=24, highlight=False, markup=False, emoji=False,
         legacy_windows=False,
     )  # fmt: skip
     for part in parts:

@@ -22,38 +22,66 @@ CLEAN = 1e-14
 
 
 def rotation_from_rpy(rpy: ArrayLike) -> Array:
-    """R = Rz(yaw) Ry(pitch) Rx(roll); rpy: (..., 3) roll, pitch, yaw [rad]. Returns (..., 3, 3)."""
+    """R = Rz(yaw) Ry(pitch) Rx(roll); rpy: (..., 3) roll, pitch, yaw [rad]. Returns (..., 3, 3).
+
+    Raises InputError for another shape and for what is not finite.
+    Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.4.2.
+    """
     return rotations.rotation_from_rpy(_vectors(rpy, "rpy", 3, "roll, pitch, yaw [rad]"))
 
 
 def rpy_from_rotation(R: ArrayLike) -> Array:
-    """Roll, pitch, yaw (..., 3) [rad] of rotations R: (..., 3, 3); at pitch = ±90° roll is 0."""
+    """Roll, pitch, yaw (..., 3) [rad] of rotations R: (..., 3, 3); at pitch = ±90° roll is 0.
+
+    Raises InputError for what is no rotation to 1e-3.
+    Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.4.2.
+    """
     return rotations.rpy_from_rotation(_rotations(R))
 
 
 def rotation_from_euler(euler: ArrayLike) -> Array:
-    """R = Rz(phi) Ry(theta) Rz(psi); euler: (..., 3) phi, theta, psi [rad]. Returns (..., 3, 3)."""
+    """R = Rz(phi) Ry(theta) Rz(psi); euler: (..., 3) phi, theta, psi [rad]. Returns (..., 3, 3).
+
+    Raises InputError for another shape and for what is not finite.
+    Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.4.1.
+    """
     return rotations.rotation_from_euler(_vectors(euler, "euler", 3, "phi, theta, psi [rad]"))
 
 
 def euler_from_rotation(R: ArrayLike) -> Array:
-    """Z Y Z Euler angles (..., 3) [rad] of rotations R: (..., 3, 3); at theta = 0 and 180° phi is 0."""
+    """Z Y Z Euler angles (..., 3) [rad] of rotations R: (..., 3, 3); at theta = 0 and 180° phi is 0.
+
+    Raises InputError for what is no rotation to 1e-3.
+    Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.4.1.
+    """
     return rotations.euler_from_rotation(_rotations(R))
 
 
 def rotation_from_quaternion(quaternion: ArrayLike) -> Array:
-    """The rotation (..., 3, 3) of quaternions w, x, y, z: (..., 4), of any length but zero."""
+    """The rotation (..., 3, 3) of a quaternion: (..., 4) w, x, y, z, of any length but zero.
+
+    Raises InputError for another shape, for what is not finite and for zeros.
+    Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.6.
+    """
     q = _vectors(quaternion, "quaternion", 4, "w, x, y, z")
     return rotations.rotation_from_quaternion(_directions(q, "quaternion"))
 
 
 def quaternion_from_rotation(R: ArrayLike) -> Array:
-    """Unit quaternions w, x, y, z (..., 4) of rotations R: (..., 3, 3), with w ≥ 0."""
+    """Unit quaternions w, x, y, z (..., 4) of rotations R: (..., 3, 3), with w ≥ 0.
+
+    Raises InputError for what is no rotation to 1e-3.
+    Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.6.
+    """
     return rotations.quaternion_from_rotation(_rotations(R))
 
 
 def rotation_from_axis_angle(axis: ArrayLike, angle: ArrayLike) -> Array:
-    """The rotation (..., 3, 3) by angle: (...) [rad] about axis: (..., 3), of any length but zero."""
+    """The rotation (..., 3, 3) by angle: (...) [rad] about axis: (..., 3), of any length but zero.
+
+    Raises InputError for other shapes, for what is not finite and for an axis of zeros.
+    Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.5.
+    """
     direction = _directions(_vectors(axis, "axis", 3, "x, y, z"), "axis")
     turn = expect_finite(angle, "angle", "angles [rad]")
     try:
@@ -64,12 +92,20 @@ def rotation_from_axis_angle(axis: ArrayLike, angle: ArrayLike) -> Array:
 
 
 def axis_angle_from_rotation(R: ArrayLike) -> tuple[Array, Array]:
-    """Unit axis (..., 3) and angle (...) [rad], from 0 to 180°, of rotations R: (..., 3, 3)."""
+    """Unit axis (..., 3) and angle (...) [rad], from 0 to 180°, of rotations R: (..., 3, 3).
+
+    Raises InputError for what is no rotation to 1e-3.
+    Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.5.
+    """
     return rotations.axis_angle_from_rotation(_rotations(R))
 
 
 def rotation_from_rotvec(rotvec: ArrayLike) -> Array:
-    """The rotation (..., 3, 3) of rotation vectors, axis times angle: (..., 3) [rad]; zero is no rotation."""
+    """The rotation (..., 3, 3) of a rotation vector, axis times angle, rotvec: (..., 3) [rad]; zero is no rotation.
+
+    Raises InputError for another shape and for what is not finite.
+    Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.5.
+    """
     v = _vectors(rotvec, "rotvec", 3, "axis times angle [rad]")
     angle = np.linalg.norm(v, axis=-1)
     still = angle == 0.0
@@ -78,7 +114,11 @@ def rotation_from_rotvec(rotvec: ArrayLike) -> Array:
 
 
 def rotvec_from_rotation(R: ArrayLike) -> Array:
-    """Rotation vectors, axis times angle: (..., 3) [rad], of rotations R: (..., 3, 3), no longer than 180°."""
+    """Rotation vectors, axis times angle: (..., 3) [rad], of rotations R: (..., 3, 3), no longer than 180°.
+
+    Raises InputError for what is no rotation to 1e-3.
+    Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.5.
+    """
     axis, angle = rotations.axis_angle_from_rotation(_rotations(R))
     return np.asarray(axis * angle[..., None])
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sweeps import sweep
 
 from .conftest import invoke, refused
 
@@ -111,7 +112,7 @@ LINES = {
 
 
 @pytest.mark.parametrize(("line", "fragments"), LINES.values(), ids=LINES.keys())
-@pytest.mark.parametrize("before", ["", "# joints\n\nq1,q2,q3,q4,q5,q6\n"], ids=["rows", "header"])
+@pytest.mark.parametrize("before", sweep(["", "# joints\n\nq1,q2,q3,q4,q5,q6\n"], 2), ids=["rows", "header"])
 def test_a_wrong_line_names_its_number(call, line, fragments, before):
     for number, ending in ((5, "\r\n"), (4711, "\n")):
         lines = before + GOOD * (number - 1 - before.count("\n")) + line + GOOD * 10
@@ -168,7 +169,7 @@ JSON_LINES = {
 }
 
 
-@pytest.mark.parametrize(("line", "fragments"), JSON_LINES.values(), ids=JSON_LINES.keys())
+@pytest.mark.parametrize(("line", "fragments"), sweep(JSON_LINES.values(), 3), ids=JSON_LINES.keys())
 def test_a_wrong_document_names_its_line(call, line, fragments):
     stdin = ("[1,2,3,4,5,6]\n\n" * 2355 + line + "\n").encode()
     answer = call(*FK, "--q", "-", "-f", "jsonl", stdin=stdin)
@@ -202,6 +203,7 @@ def answered(answer, *statuses):
         assert answer.err.startswith("robokin: ")
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=80)
 @given(st.lists(PIECES, max_size=12), st.sampled_from(["", " ", ","]))
 def test_any_vector_and_any_expression_get_an_answer(pieces, joint):
@@ -211,6 +213,7 @@ def test_any_vector_and_any_expression_get_an_answer(pieces, joint):
     answered(invoke("frame", "Rot(z,30)", f"--point={text}", "--json"), 0, 2)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=60)
 @given(st.one_of(st.binary(max_size=60), st.lists(PIECES, max_size=30).map(lambda p: ",".join(p).encode())))
 def test_any_bytes_get_an_answer(stdin):

@@ -14,9 +14,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from library_entries import names_of
+from sweeps import sweep
 
 import robokin
-from robokin.formats import library_names, load_any
 from robokin.model import Robot
 
 from .conftest import refused
@@ -24,7 +25,7 @@ from .conftest import refused
 DOCS = Path(__file__).parent.parent.parent / "docs"
 PUMA = ["check", "fk", "puma560", "--q", "home"]
 RIGHT = "-149.09,921.12,20.32"
-ROBOTS = [name for name in library_names() if isinstance(load_any(name), Robot) and load_any(name).n]
+ROBOTS = names_of(Robot, 1)
 PLANAR = ["check", "ik", "planar3r-brac", "--xy", "26.4743,50.8716", "--phi", "85"]
 
 
@@ -116,7 +117,7 @@ def test_several_questions(call):
     assert [line["robot"] for line in answer.jsonl] == ["puma560"] * 2
 
 
-@pytest.mark.parametrize("kind", ["rpy", "quaternion", "euler", "matrix"])
+@pytest.mark.parametrize("kind", sweep(["rpy", "quaternion", "euler", "matrix"], 4))
 def test_fk_output_is_a_right_answer_and_a_shifted_one_is_wrong(call, kind, rng):
     for name in ROBOTS[:: len(ROBOTS) // 12]:
         robot = robokin.load(name)
@@ -240,7 +241,7 @@ BAD_LINES = {
 }
 
 
-@pytest.mark.parametrize(("line", "status"), BAD_LINES.items())
+@pytest.mark.parametrize(("line", "status"), sweep(BAD_LINES.items(), 3))
 def test_a_bad_line_is_a_wrong_answer(call, line, status):
     text = f"# answers\n\nq1,q2,q3,x,y,z\n0,0,0,0.9,0,0\n{line}\n0,0,0,0.9,0,0\n"
     answer = call("check", "fk", "anthropomorphic", "-i", "-", "--json", stdin=text.encode())

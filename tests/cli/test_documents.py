@@ -8,6 +8,7 @@ from functools import cache
 
 import pytest
 from jsonschema import Draft202012Validator
+from sweeps import sweep
 
 from robokin.formats.library import library_names
 from robokin.records.schemas import CHECKS, HOMES, document_schema
@@ -100,7 +101,7 @@ def answers_to(words):
     return [answers[0].json, *(line for answer in answers[1:] for line in answer.jsonl)]
 
 
-@pytest.mark.parametrize("words", COMMANDS, ids=lambda words: " ".join(words)[:70])
+@pytest.mark.parametrize("words", sweep(COMMANDS, 4), ids=lambda words: " ".join(words)[:70])
 def test_documents_are_what_their_schema_says(words):
     schema, kind = schema_of(words)
     for document in answers_to(tuple(words)):
@@ -250,7 +251,7 @@ def test_truth_values_are_those_of_json_in_every_format(call):
     assert {"true", "false"} <= set(cells)
 
 
-@pytest.mark.parametrize("level", ["verdict", "part", "distance"])
+@pytest.mark.parametrize("level", sweep(["verdict", "part", "distance"], 3))
 def test_marks_of_which_less_is_told_are_documents(call, tmp_path, level):
     jacobian = ["jacobian", "planar2r", "--q", "0,90", "--expect", "[[1,2],[1,2],[0,0],[0,0],[0,0],[1,1]]"]
     for words in (

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.formats import library_names, load_any
@@ -163,7 +164,7 @@ def test_the_record_of_a_mechanism(call):
     assert set(record["units"]) == {"length", "angle"}
 
 
-@pytest.mark.parametrize("name", library_names())
+@pytest.mark.parametrize("name", sweep(library_names(), 4))
 def test_every_entry_has_an_answer_that_agrees_with_its_file(call, name):
     entry = load_any(name)
     answer = call("dof", name, "-f", "jsonl")
@@ -394,6 +395,7 @@ def test_a_trace_as_csv(call):
     assert np.allclose(np.cos(np.radians(rows[:, 6] - rows[:, 0])), 1.0)
 
 
+@pytest.mark.slow
 def test_formats_of_a_trace_agree(call, tmp_path):
     words = ["dof", "slider-crank", "--trace", "7", "--point", "rod:1,0.5", "--point", "slider:0,0"]
     table = call(*words, "-f", "csv").numbers
@@ -480,7 +482,7 @@ drawn = pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib i
 
 
 @drawn
-@pytest.mark.parametrize(("ending", "start"), [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")])
+@pytest.mark.parametrize(("ending", "start"), sweep([(".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")], 3))
 def test_a_picture(call, tmp_path, ending, start):
     path = tmp_path / f"four{ending}"
     answer = call("dof", "four-bar", "--plot", path, "--point", "coupler:3,4")
@@ -493,7 +495,7 @@ def test_a_picture(call, tmp_path, ending, start):
 
 
 @drawn
-@pytest.mark.parametrize("name", ["shaky-triangle", "planetary", "scotch-yoke", "wedge", "jansen-leg"])
+@pytest.mark.parametrize("name", sweep(["shaky-triangle", "planetary", "scotch-yoke", "wedge", "jansen-leg"], 5))
 def test_what_does_not_move_or_slides_is_drawn_too(call, tmp_path, name):
     path = tmp_path / "p.svg"
     assert call("dof", name, "--plot", path).status == 0

@@ -8,6 +8,7 @@ import re
 import numpy as np
 import pytest
 from conftest import data
+from sweeps import sweep
 
 import robokin
 from robokin.spatial import (
@@ -261,7 +262,7 @@ def test_a_value_just_outside_is_not_shown_as_the_limit(call):
     assert "= 160.0001 deg is outside" in call("fk", "puma560", "--q", "160.0001,0,0,0,0,0").err
 
 
-@pytest.mark.parametrize("name", ["puma560", "gen3", "panda", "ur5e", "scara", "stanford", "fr3", "rizon4"])
+@pytest.mark.parametrize("name", sweep(["puma560", "gen3", "panda", "ur5e", "scara", "stanford", "fr3", "rizon4"], 4))
 @pytest.mark.parametrize("angle", ["deg", "rad"])
 def test_limits_are_inclusive_as_they_are_printed(call, name, angle):
     rows = [row for row in call("show", name, "--json", "--angle", angle).json["rows"] if row["variable"]]

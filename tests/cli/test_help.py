@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.cli.app import COMMANDS
@@ -47,7 +48,10 @@ def test_the_help_of_a_command(call, command):
     assert call(command, "-h").out == answer.out
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+TAKES_LONG = pytest.param("workspace", marks=pytest.mark.slow)
+
+
+@pytest.mark.parametrize("command", [*(name for name in COMMANDS if name != "workspace"), TAKES_LONG])
 def test_the_examples_run(call, command, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     rows = b"0,0,0,0,0,0\n10,20,30,40,50,60\n90,0,90,0,0,0\n"
@@ -110,7 +114,7 @@ WORDS = {"--format": ("fk", "puma560"), "--angle": ("fk", "puma560"), "--length"
          "--task": ("jacobian", "puma560"), "--sampling": ("workspace", "planar2r")}  # fmt: skip
 
 
-@pytest.mark.parametrize("option", WORDS)
+@pytest.mark.parametrize("option", sweep(WORDS, 4))
 def test_what_is_offered_is_accepted(call, option):
     command, robot = WORDS[option]
     more = {"ik": ("--xyz", "500,100,300"), "workspace": ("-n", "64")}.get(command, ("--q", "home"))

@@ -11,6 +11,7 @@ import sys
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
@@ -500,7 +501,7 @@ def test_nothing_in_is_nothing_out(call, tmp_path, text):
     assert np.load(tmp_path / "q.npy").shape == (0, 0, 6)
 
 
-@pytest.mark.parametrize("form", ["csv", "jsonl", "table"])
+@pytest.mark.parametrize("form", sweep(["csv", "jsonl", "table"], 3))
 def test_a_line_is_answered_before_the_next_is_asked(form):
     command = [*PROGRAM, "ik", "puma560", "--input", "-", "--max", "1", "-f", form]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment()) as process:
@@ -524,6 +525,7 @@ print(status, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="the unit of ru_maxrss is the system's")
 def test_memory_does_not_grow_with_the_input(tmp_path, rng):
     limits = robokin.load("puma560").limits
@@ -711,6 +713,7 @@ def test_python_and_the_shell_take_the_same_matrices(call, part):
     assert np.allclose(np.deg2rad(shell), python, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_target_far_beyond_the_plane_of_an_arm_has_a_nearest_configuration(call):
     """At poses close by there is no complex solution either to begin a path from."""
     answer = call("ik", "planar2r", "--xyz", "1,-45,-0.6729246136411673", "--length", "cm", "--json")

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 ROUND = [
     ("xarm6", "20,-30,-60,0,60,10", 4),
@@ -74,14 +75,14 @@ def by_matrix(call):
     return by_matrix
 
 
-@pytest.mark.parametrize(("robot", "q", "least"), ROUND)
+@pytest.mark.parametrize(("robot", "q", "least"), sweep(ROUND, 3))
 def test_round_poses_in_a_pipe(by_pipe, robot, q, least):
     rows, answer = by_pipe(robot, q)
     assert answer.status == 0, answer.text
     assert len(rows) >= least
 
 
-@pytest.mark.parametrize(("robot", "q", "least"), ROUND)
+@pytest.mark.parametrize(("robot", "q", "least"), sweep(ROUND, 3))
 def test_round_poses_as_a_matrix(by_matrix, robot, q, least):
     answer = by_matrix(robot, q)
     assert answer.status == 0, answer.text
@@ -121,7 +122,7 @@ def test_near_a_configuration_that_solves_the_pose(by_pipe, robot):
     assert np.allclose(np.array(rows[0][2:8], dtype=float), [10, -80, 70, 20, 0, 30], atol=1e-4)
 
 
-@pytest.mark.parametrize("robot", ["ur5e", "cr5"])
+@pytest.mark.parametrize("robot", sweep(["ur5e", "cr5"], 2))
 def test_a_line_from_a_singular_configuration_to_itself(call, robot):
     q = "10,-80,70,20,0,30"
     answer = call("path", robot, "--from", q, "--to", q, "--line", "--steps", "10", "-f", "csv")
@@ -129,7 +130,7 @@ def test_a_line_from_a_singular_configuration_to_itself(call, robot):
     assert np.allclose(answer.numbers[:, 1:7], [10, -80, 70, 20, 0, 30], atol=1e-4)
 
 
-@pytest.mark.parametrize("start", ["1,2,3,0,0,0", "1,2,3,-90,0,90"])
+@pytest.mark.parametrize("start", sweep(["1,2,3,-90,0,90", "1,2,3,0,0,0"], 2))
 def test_a_line_that_starts_with_a_straight_wrist(call, tmp_path, start):
     """Rot(x, 90) is Rz(-90) Ry(90) Rz(90): q4 and q6 turn against each other first, and the tool stands still."""
     path = tmp_path / "wrist.yaml"
@@ -166,7 +167,7 @@ def test_whole_turns_within_the_limits(call):
     assert str(32 * len(found)) in call("ik", "ur5e", *POSE).text
 
 
-@pytest.mark.parametrize("robot", ["ur5e", "stanford", "raghavan-roth-rprrpr", "z1"])
+@pytest.mark.parametrize("robot", sweep(["ur5e", "stanford", "raghavan-roth-rprrpr", "z1"], 4))
 def test_nothing_is_written_to_stderr_at_round_poses(by_pipe, robot):
     for q in ("0,0,400,0,0,0", "90,-90,400,0,90,0") if robot == "stanford" else ("0,0,0,0,0,0", "90,-90,0,0,90,0"):
         _, answer = by_pipe(robot, q)

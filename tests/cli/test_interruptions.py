@@ -10,6 +10,7 @@ import sys
 import time
 
 import pytest
+from sweeps import sweep
 
 from .conftest import environment
 
@@ -67,7 +68,7 @@ COMMANDS = [
 ]
 
 
-@pytest.mark.parametrize("number", SIGNALS)
+@pytest.mark.parametrize("number", sweep(SIGNALS, 3))
 def test_at_any_moment(tmp_path, number):
     """From the first moment on: while modules are imported, while it works, while it ends."""
     for i, pause in enumerate([0.0, 0.0, 0.01, 0.03, 0.06, 0.1, 0.15, 0.25]):
@@ -90,7 +91,7 @@ def test_at_any_moment(tmp_path, number):
         assert b"Traceback" not in out
 
 
-@pytest.mark.parametrize("number", SIGNALS)
+@pytest.mark.parametrize("number", sweep(SIGNALS, 3))
 @pytest.mark.parametrize(
     "command",
     [["show", "./pipe"], ["fk", "puma560", "-i", "pipe"], ["ik", "puma560", "--matrix", "pipe"],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from sweeps import sweep
 
 from robokin.formats import library_index, library_names, load_any
 
@@ -58,7 +59,9 @@ def ids(answer):
     return {record["id"] for record in answer.json}
 
 
-@pytest.mark.parametrize("words", [["kuka"], ["KUKA", "arc"], ["mechanism"], ["wheeled"], ["RRPR"], ["kuka arc"]])
+@pytest.mark.parametrize(
+    "words", sweep([["kuka"], ["KUKA", "arc"], ["mechanism"], ["wheeled"], ["RRPR"], ["kuka arc"]], 3)
+)
 def test_words_narrow_the_list(call, words):
     records = call("list", "--json").json
     found = call("list", *words, "--json").json
@@ -81,15 +84,18 @@ def test_words_are_not_letters_within_words(call):
 
 @pytest.mark.parametrize(
     ("word", "some"),
-    [
-        ("scara", {"scara", "cobra-s600", "adept-one", "epson-ls3-401s", "tp80", "kr5-scara-r350"}),
-        ("planar", {"planar3r", "four-bar"}),
-        ("anthropomorphic", {"puma560"}),
-        ("spherical", {"stanford", "spherical-four-bar"}),
-        ("redundant", {"panda", "iiwa7"}),
-        ("gear", {"gear-pair"}),
-        ("mobile", {"car", "mecanum"}),
-    ],
+    sweep(
+        [
+            ("scara", {"scara", "cobra-s600", "adept-one", "epson-ls3-401s", "tp80", "kr5-scara-r350"}),
+            ("planar", {"planar3r", "four-bar"}),
+            ("anthropomorphic", {"puma560"}),
+            ("spherical", {"stanford", "spherical-four-bar"}),
+            ("redundant", {"panda", "iiwa7"}),
+            ("gear", {"gear-pair"}),
+            ("mobile", {"car", "mecanum"}),
+        ],
+        3,
+    ),
 )
 def test_a_word_finds_what_is_of_that_kind(call, word, some):
     assert some <= ids(call("list", word, "--json"))
@@ -112,6 +118,7 @@ def test_nothing_found_is_said_and_is_a_no(call):
 # The index ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_index_says_what_the_descriptions_say():
     kept = library_index.library_folder() / library_index.INDEX
     assert kept.read_text(encoding="utf-8") == library_index.index_text(), (

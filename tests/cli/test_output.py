@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 from .conftest import PROGRAM, environment, refused
 
@@ -128,7 +129,9 @@ def test_ending_and_format_may_agree_but_not_differ(call, tmp_path):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-@pytest.mark.parametrize("command", ["list", "fk puma560 --q home --json", "frame Rot(z,30)", "fk puma560 --q -", "-h"])
+@pytest.mark.parametrize(
+    "command", sweep(["list", "fk puma560 --q home --json", "frame Rot(z,30)", "fk puma560 --q -", "-h"], 3)
+)
 def test_a_full_device_is_said_once(run, command):
     with Path("/dev/full").open("wb") as full:
         answer = run(*command.split(), stdin=BATCH, stdout=full)
@@ -164,13 +167,16 @@ def test_nobody_reads(command):
 @pytest.mark.skipif(os.name != "posix", reason="the shell closes the streams")
 @pytest.mark.parametrize(
     ("command", "closed", "status", "sentence"),
-    [
-        ("list", ">&-", 2, "standard output is closed"),
-        ("fk puma560 --q home", ">&-", 2, "standard output is closed"),
-        ("fk puma560 --q -", "<&-", 2, "standard input is closed"),
-        ("fk puma560 --q home", "<&-", 0, ""),
-        ("--version", ">&-", 2, "standard output is closed"),
-    ],
+    sweep(
+        [
+            ("list", ">&-", 2, "standard output is closed"),
+            ("fk puma560 --q home", ">&-", 2, "standard output is closed"),
+            ("fk puma560 --q -", "<&-", 2, "standard input is closed"),
+            ("fk puma560 --q home", "<&-", 0, ""),
+            ("--version", ">&-", 2, "standard output is closed"),
+        ],
+        3,
+    ),
 )
 def test_a_stream_may_be_closed_from_the_start(tmp_path, command, closed, status, sentence):
     line = f'"$0" -c "$1" {command} {closed}'

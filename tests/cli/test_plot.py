@@ -180,6 +180,7 @@ def test_what_is_wrong_gets_a_sentence(call, arguments, fragments, tmp_path, mon
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_plot_draws_mechanisms(call, tmp_path):
     text = call("plot", "four-bar").text
     assert "Four-bar linkage" in text

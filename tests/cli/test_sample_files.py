@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.cli.statuses import say
@@ -300,7 +301,7 @@ def left(space, folder, kind="csv", **more):
     return part, side, json.loads(side.read_text())
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", sweep(KINDS, 4))
 @pytest.mark.parametrize("place", [0, 5, -1])
 def test_a_part_with_another_byte_is_not_gone_on_with(kind, place, puma, tmp_path):
     part, _, _ = left(puma, tmp_path, kind)
@@ -313,7 +314,7 @@ def test_a_part_with_another_byte_is_not_gone_on_with(kind, place, puma, tmp_pat
     assert write_samples(str(tmp_path / f"cloud.{kind}"), samples_of(puma, kind)) == 0
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", sweep(KINDS, 4))
 @pytest.mark.parametrize(
     "change",
     [{"done": 10**18}, {"done": 10**400}, {"done": 1000}, {"done": 2500}, {"done": 1999}, {"done": True}, {"done": 2e3},
@@ -461,7 +462,7 @@ except KeyboardInterrupt:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there are no such signals")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("number", sweep([signal.SIGINT, signal.SIGKILL], 2))
 def test_a_run_that_is_hit_by_a_signal_is_resumed(number, tmp_path):
     path, part = tmp_path / "cloud.csv", tmp_path / "cloud.csv.part"
     command = [sys.executable, "-c", LONG, str(path)]

@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 from .conftest import refused
 
@@ -25,7 +26,7 @@ def test_the_document(call):
     assert (wrist["joints"], wrist["values"], wrist["within_limits"]) == ([5], [0.0, 180.0], [True, False])
 
 
-@pytest.mark.parametrize("robot", ["puma560", "anthropomorphic", "stanford", "scara", "ur5e", "iiwa14"])
+@pytest.mark.parametrize("robot", sweep(["puma560", "anthropomorphic", "stanford", "scara", "ur5e", "iiwa14"], 3))
 def test_the_examples_are_singular(call, robot):
     for one in call("singular", robot, "--json").json["singularities"]:
         q = ",".join(map(repr, one["example"]))

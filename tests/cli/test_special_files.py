@@ -14,6 +14,7 @@ import threading
 from pathlib import Path
 
 import pytest
+from sweeps import sweep
 
 from robokin.errors import OutputError
 from robokin.files import descriptor_of
@@ -71,7 +72,9 @@ INPUTS = {
 
 
 @pytest.mark.parametrize("command", INPUTS.values(), ids=INPUTS.keys())
-@pytest.mark.parametrize("source", ["/dev/zero", "/dev/urandom", "/dev/null", ".", "none", "socket", "/proc/self/mem"])
+@pytest.mark.parametrize(
+    "source", sweep(["/dev/zero", "/dev/urandom", "/dev/null", ".", "none", "socket", "/proc/self/mem"], 3)
+)
 def test_every_input_is_bounded_and_ends_in_a_sentence(call, tmp_path, monkeypatch, command, source):
     monkeypatch.chdir(tmp_path)
     if source == "socket":
@@ -194,7 +197,7 @@ def test_a_file_that_may_not_be_written_is_not_replaced(tmp_path, monkeypatch):
     assert path.read_text() == "old"
 
 
-@pytest.mark.parametrize(("command", "ending"), OUTPUTS.values(), ids=OUTPUTS.keys())
+@pytest.mark.parametrize(("command", "ending"), sweep(OUTPUTS.values(), 3), ids=OUTPUTS.keys())
 def test_places_that_are_no_places(call, tmp_path, monkeypatch, command, ending):
     monkeypatch.chdir(tmp_path)
     bind(f"socket.{ending}")
@@ -218,7 +221,7 @@ CLOSED = ["list", "list -f csv", "show four-bar", "dof four-bar", "fk puma560 --
           "validate puma560", "nonsense"]  # fmt: skip
 
 
-@pytest.mark.parametrize("command", CLOSED)
+@pytest.mark.parametrize("command", sweep(CLOSED, 4))
 def test_streams_that_are_closed_bring_no_traceback(tmp_path, command):
     kinds = [part for count in (1, 2, 3) for part in itertools.combinations(("<&-", ">&-", "2>&-"), count)]
     kinds = kinds if command == "list" else [(">&-",), ("<&-", ">&-", "2>&-")]

@@ -10,6 +10,7 @@ import sys
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 from .conftest import PROGRAM, environment, poses_of, refused
 
@@ -77,7 +78,7 @@ JSON_LINES = {
 ALL_TEXTS = {**TEXTS, **{f"JSON lines: {name}": text for name, text in JSON_LINES.items()}}
 
 
-@pytest.mark.parametrize("text", ALL_TEXTS.values(), ids=ALL_TEXTS.keys())
+@pytest.mark.parametrize("text", sweep(ALL_TEXTS.values(), 3), ids=ALL_TEXTS.keys())
 def test_standard_input_in_every_form(call, expected, text):
     for option in ("--q", "--input"):
         answer = call("fk", "puma560", option, "-", "-f", "csv", stdin=text)
@@ -269,7 +270,7 @@ def test_arrays_of_poses(call, tmp_path, kind, shape):
 # A batch is many single ones -----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["puma560", "scara", "panda", "stanford", "human-arm"])
+@pytest.mark.parametrize("name", sweep(["puma560", "scara", "panda", "stanford", "human-arm"], 2))
 def test_a_batch_equals_the_single_answers(call, rng, name):
     n = len([row for row in call("show", name, "--json").json["rows"] if row["variable"]])
     q = rng.uniform(-90, 90, (40, n))
@@ -299,6 +300,7 @@ def test_every_number_comes_back_as_it_went_in(call, rng):
         assert answer.numbers[-600:, :3].tolist() == q.tolist()
 
 
+@pytest.mark.slow
 def test_a_long_batch_crosses_blocks(call, rng):
     q = rng.uniform(-90, 90, (12_345, 6))
     stdin = "".join(",".join(map(repr, row)) + "\n" for row in q.tolist()).encode()
@@ -330,7 +332,7 @@ def test_what_is_outside_the_limits_is_counted(call, tmp_path):
 # Streaming -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("form", ["csv", "jsonl", "table"])
+@pytest.mark.parametrize("form", sweep(["csv", "jsonl", "table"], 3))
 def test_a_line_is_answered_before_the_next_is_asked(form):
     command = [*PROGRAM, "fk", "puma560", "--q", "-", "-f", form]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment()) as process:
@@ -355,6 +357,7 @@ print(status, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="the unit of ru_maxrss is the system's")
 @pytest.mark.parametrize(("ending", "order"), [("csv", "C"), ("npy", "C"), ("npy", "F")])
 def test_memory_does_not_grow_with_the_input(tmp_path, rng, ending, order):

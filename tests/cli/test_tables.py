@@ -8,6 +8,7 @@ import json
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 from .conftest import refused
 
@@ -27,7 +28,7 @@ def text(rows, header="", separator=",") -> bytes:
     return ("\n".join([header, *lines] if header else lines) + "\n").encode()
 
 
-@pytest.mark.parametrize(("kind", "form"), list(itertools.product(KINDS, FORMATS)))
+@pytest.mark.parametrize(("kind", "form"), sweep(list(itertools.product(KINDS, FORMATS)), 4))
 def test_there_and_back(call, tmp_path, joints, kind, form):
     """Law 6: fk's output is legal input to ik and the other way round, and is the same pose again."""
     poses, q, again = (tmp_path / f"{name}.{form}" for name in ("poses", "q", "again"))
@@ -64,7 +65,7 @@ HEADERS = {
 
 
 @pytest.mark.parametrize(("header", "kind"), HEADERS.items(), ids=HEADERS)
-@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize("separator", sweep([",", ";", "\t"], 3))
 def test_usual_headers(call, joints, header, kind, separator):
     poses = {}
     for way in KINDS:
@@ -367,7 +368,7 @@ def test_an_array_is_checked_whole(call, tmp_path, data, said):
 
 
 @pytest.mark.parametrize("dtype", ["<f8", ">f8", "<f4", ">i4", "<u2", "<f2", "|i1", "<f16"])
-@pytest.mark.parametrize("fortran", [False, True])
+@pytest.mark.parametrize("fortran", sweep([False, True], 2))
 @pytest.mark.parametrize("version", [(1, 0), (2, 0), (3, 0)])
 def test_arrays_of_every_kind(call, tmp_path, dtype, fortran, version):
     q = np.array([[10, 20], [30, 40], [0, 5]]).astype(dtype)
@@ -379,6 +380,7 @@ def test_arrays_of_every_kind(call, tmp_path, dtype, fortran, version):
     assert call("fk", "planar2r", "-i", "-", "-f", "csv", stdin=stream.getvalue()).out == expected
 
 
+@pytest.mark.slow
 def test_arrays_of_poses_in_fortran_order(call, tmp_path):
     call("fk", "puma560", "-i", "-", "-o", tmp_path / "T.npy", stdin=text(ROUND[1:3]))
     T = np.load(tmp_path / "T.npy")

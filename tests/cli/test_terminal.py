@@ -11,6 +11,7 @@ from unittest import mock
 import numpy as np
 import pytest
 from rich.cells import cell_len
+from sweeps import sweep
 
 from robokin.errors import visible
 from robokin.formats import library_names
@@ -75,7 +76,7 @@ def test_no_width_cuts_a_number(call, leg, monkeypatch, columns):
         assert number in found
 
 
-@pytest.mark.parametrize("name", library_names()[::7])
+@pytest.mark.parametrize("name", sweep(library_names()[::7], 4))
 def test_the_numbers_of_a_page_are_those_of_a_page_without_end(call, monkeypatch, name):
     """However the table is fitted into 80 columns."""
     narrow = call("show", name)

@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 from .conftest import invoke, poses_of, refused
 
@@ -72,6 +73,7 @@ def test_where_the_bounds_are_reached_forward_kinematics_agrees(call):
     assert np.allclose(np.linalg.norm(p, axis=1), [document["reach"]["min"], document["reach"]["max"]], atol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_answer_is_the_same_bytes_on_one_core_and_on_two(call):
     one = call("workspace", "stanford", *FEW, "--cores", "1", "--json")
     two = call("workspace", "stanford", *FEW, "--cores", "2", "--json")
@@ -138,6 +140,7 @@ def test_the_three_sets_are_named_and_have_sizes(freedom):
     assert 0.0 < min(dexterity["map"]["fraction"]) <= max(dexterity["map"]["fraction"]) == 1.0
 
 
+@pytest.mark.slow
 def test_shades_show_where_every_orientation_is_reached(call):
     answer = call("workspace", "planar3r", "--dextrous", *FEW)
     assert max(map(len, answer.lines)) <= 80
@@ -314,39 +317,42 @@ def test_without_matplotlib_nothing_is_worked_out_before_the_sentence(call, monk
 
 @pytest.mark.parametrize(
     ("arguments", "fragments"),
-    [
-        (["planar2r", "--samples", "0"], ["--samples", "found '0'", "whole number"]),
-        (["planar2r", "--samples", "-5"], ["--samples", "-5"]),
-        (["planar2r", "--samples", "many"], ["--samples", "many"]),
-        (["planar2r", "--samples", "9" * 40], ["--samples"]),
-        (["planar2r", "--seed", "-1"], ["--seed"]),
-        (["planar2r", "--cores", "0"], ["--cores"]),
-        (["planar2r", "--sampling", "sobel"], ["sobel", "did you mean 'sobol'"]),
-        (["planar2r", "--voxel", "0.1"], ["--voxel", "--dextrous"]),
-        (["planar3r", "--dextrous", "--voxel", "0"], ["--voxel", "greater than 0"]),
-        (["planar3r", "--dextrous", "--voxel", "50"], ["voxel"]),
-        (["planar3r", "--dextrous", "--voxel", "1e-9"], ["voxel", "cells"]),
-        (["planar2r", "--slice", "z=0"], ["--slice", "no solid"]),
-        (["planar2r", "--section"], ["--section", "no solid"]),
-        (["cartesian", "--section"], ["--section", "--slice"]),
-        (["scara", "--slice", "0.3"], ["--slice", "found '0.3'"]),
-        (["scara", "--slice", "w=0.3"], ["--slice", "w=0.3"]),
-        (["scara", "--slice", "z=up"], ["--slice"]),
-        (["scara", "--at", "1,2"], ["--at", "found 2 values"]),
-        (["planar2r", "--at", "1,2,0", "--compare", "scara"], ["--at", "--compare", "exclude"]),
-        (["planar2r", "--at", "1,2,0", "--plot", "a.png"], ["--at", "--plot", "exclude"]),
-        (["planar2r", "--output", "a.csv", "--dextrous"], ["--output", "--dextrous", "exclude"]),
-        (["planar2r", "--output", "a.csv", "--json"], ["--output", "--json"]),
-        (["planar2r", "--output", "a.txt"], ["a.txt", ".ply"]),
-        (["planar2r", "--with", "joints"], ["--with", "--output"]),
-        (["planar2r", "--resume"], ["--resume", "--output"]),
-        (["planar2r", "--with", "forces", "--output", "a.csv"], ["--with", "forces"]),
-        (["planar2r", "--as", "rpy", "--output", "a.csv"], ["--as", "--with poses"]),
-        (["planar2r", "--plot", "a.gif"], ["a.gif", ".html"]),
-        (["planar2r", "--compare", "scra"], ["scra", "scara"]),
-        (["planar2r", "--plot", "nowhere/a.html", "--samples", "4096"], ["--plot", "nowhere"]),
-        (["four-bar"], ["mechanism"]),
-    ],
+    sweep(
+        [
+            (["planar2r", "--samples", "0"], ["--samples", "found '0'", "whole number"]),
+            (["planar2r", "--samples", "-5"], ["--samples", "-5"]),
+            (["planar2r", "--samples", "many"], ["--samples", "many"]),
+            (["planar2r", "--samples", "9" * 40], ["--samples"]),
+            (["planar2r", "--seed", "-1"], ["--seed"]),
+            (["planar2r", "--cores", "0"], ["--cores"]),
+            (["planar2r", "--sampling", "sobel"], ["sobel", "did you mean 'sobol'"]),
+            (["planar2r", "--voxel", "0.1"], ["--voxel", "--dextrous"]),
+            (["planar3r", "--dextrous", "--voxel", "0"], ["--voxel", "greater than 0"]),
+            (["planar3r", "--dextrous", "--voxel", "50"], ["voxel"]),
+            (["planar3r", "--dextrous", "--voxel", "1e-9"], ["voxel", "cells"]),
+            (["planar2r", "--slice", "z=0"], ["--slice", "no solid"]),
+            (["planar2r", "--section"], ["--section", "no solid"]),
+            (["cartesian", "--section"], ["--section", "--slice"]),
+            (["scara", "--slice", "0.3"], ["--slice", "found '0.3'"]),
+            (["scara", "--slice", "w=0.3"], ["--slice", "w=0.3"]),
+            (["scara", "--slice", "z=up"], ["--slice"]),
+            (["scara", "--at", "1,2"], ["--at", "found 2 values"]),
+            (["planar2r", "--at", "1,2,0", "--compare", "scara"], ["--at", "--compare", "exclude"]),
+            (["planar2r", "--at", "1,2,0", "--plot", "a.png"], ["--at", "--plot", "exclude"]),
+            (["planar2r", "--output", "a.csv", "--dextrous"], ["--output", "--dextrous", "exclude"]),
+            (["planar2r", "--output", "a.csv", "--json"], ["--output", "--json"]),
+            (["planar2r", "--output", "a.txt"], ["a.txt", ".ply"]),
+            (["planar2r", "--with", "joints"], ["--with", "--output"]),
+            (["planar2r", "--resume"], ["--resume", "--output"]),
+            (["planar2r", "--with", "forces", "--output", "a.csv"], ["--with", "forces"]),
+            (["planar2r", "--as", "rpy", "--output", "a.csv"], ["--as", "--with poses"]),
+            (["planar2r", "--plot", "a.gif"], ["a.gif", ".html"]),
+            (["planar2r", "--compare", "scra"], ["scra", "scara"]),
+            (["planar2r", "--plot", "nowhere/a.html", "--samples", "4096"], ["--plot", "nowhere"]),
+            (["four-bar"], ["mechanism"]),
+        ],
+        3,
+    ),
 )
 def test_what_is_wrong_gets_a_sentence(call, arguments, fragments, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from library_entries import entry, names_of
+from sweeps import sweep
 
 import robokin
 from robokin.derivation.derivation_of import plan_of
@@ -27,15 +29,8 @@ rounding of 1e-16 is at most some 1e-12 there, on each of the other branches as 
 
 def robots():
     """The library's robots that have a lesson."""
-    found = []
-    for name in library_names():
-        try:
-            robot = robokin.load(name)
-        except robokin.RobokinError:
-            continue
-        if robot.n and plan_of(robot, np.zeros(robot.n)) is not None:
-            found.append(robot)
-    return found
+    found = [entry(name) for name in names_of(Robot, 1)]
+    return [robot for robot in found if plan_of(robot, np.zeros(robot.n)) is not None]
 
 
 LIBRARY = robots()
@@ -84,7 +79,7 @@ def numbers_follow(lesson):
         np.testing.assert_array_equal(evaluate(step.formula, values), step.result.value)
 
 
-@pytest.mark.parametrize("robot", LIBRARY, ids=ids)
+@pytest.mark.parametrize("robot", sweep(LIBRARY, 4), ids=ids)
 def test_the_ends_are_the_solutions(robot, rng):
     for q, T in regular_poses(robot, rng, 1):
         lesson = solutions_match(robot, T)
@@ -211,7 +206,7 @@ KINDS = {
 """Types, twists by random signs, and which lengths are not zero."""
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", sweep(KINDS, 4))
 def test_arms_of_any_make(kind, rng):
     types, twists, lengths = KINDS[kind]
     for _ in range(2):

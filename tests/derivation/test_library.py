@@ -8,17 +8,18 @@ import numpy as np
 import pytest
 from derivation.evaluation import evaluated, matrix_of, source_of
 from kinematics.chains import random_chain
+from library_entries import names_of
+from sweeps import sweep
 
 import robokin
 from robokin.derivation.symbolic_kinematics import symbolic_kinematics
 from robokin.derivation.symbolic_product import MAX_SYMBOLS
 from robokin.errors import InputError
-from robokin.formats import library_names, load_any
 from robokin.kinematics.forward import row_frames
 from robokin.model import Joint, JointType, Robot
 from robokin.units import Units
 
-ROBOTS = [name for name in library_names() if isinstance(load_any(name), Robot) and load_any(name).n <= 7]
+ROBOTS = names_of(Robot, 0, 7)
 
 TOLERANCE = 1e-10
 """Metres, and entries of a rotation."""
@@ -26,7 +27,7 @@ TOLERANCE = 1e-10
 SI = Units("m", "rad")
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", sweep(ROBOTS, 5))
 def test_a_thousand_configurations_of_every_robot_of_the_library(name, rng):
     robot = robokin.load(name)
     q = rng.uniform(-4.0, 4.0, (1000, robot.n))
@@ -53,7 +54,7 @@ def test_the_matrices_multiply_to_the_product_and_to_every_frame(name, rng):
         assert np.max(np.abs(matrix_of(robot, symbolic, matrix, q) - frames[:, k])) < TOLERANCE
 
 
-@pytest.mark.parametrize("convention", ["standard", "modified", "frames"])
+@pytest.mark.parametrize("convention", sweep(["standard", "modified", "frames"], 3))
 @pytest.mark.parametrize("special", [False, True])
 def test_random_chains(convention, special, rng):
     for n in range(1, 7):

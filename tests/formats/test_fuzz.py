@@ -67,6 +67,7 @@ def read_or_say(text):
             assert joint.axes is None or np.allclose(np.linalg.norm(joint.axes, axis=1), 1.0)
 
 
+@pytest.mark.slow
 @repeat(200)
 @given(st.text(max_size=200))
 def test_any_text(text):
@@ -105,6 +106,7 @@ FLOW = st.recursive(
 )
 
 
+@pytest.mark.slow
 @repeat(250)
 @given(st.lists(st.tuples(WORDS, FLOW), max_size=6))
 def test_text_like_a_description(pairs):
@@ -113,6 +115,7 @@ def test_text_like_a_description(pairs):
     read_or_say("robokin: 1\nname: x\n" + body)
 
 
+@pytest.mark.slow
 @repeat(250)
 @given(st.lists(st.tuples(WORDS, FLOW), max_size=4), st.sampled_from(["R", "P", "F", "revolute"]))
 def test_rows_of_anything(pairs, kind):
@@ -122,6 +125,7 @@ def test_rows_of_anything(pairs, kind):
     read_or_say(f"{DEGREES}joints: {{{cells}}}\n")
 
 
+@pytest.mark.slow
 @repeat(150)
 @given(
     st.lists(st.tuples(WORDS, FLOW), max_size=4),
@@ -136,6 +140,7 @@ def test_joints_of_anything(pairs, kind):
 LIBRARY = [path.read_text(encoding="utf-8") for path in library_files()]
 
 
+@pytest.mark.slow
 @repeat(300)
 @given(
     st.sampled_from(LIBRARY), st.integers(0, 10_000), st.integers(0, 12), st.one_of(st.text(max_size=6), WORDS, FLOW)

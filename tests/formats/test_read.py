@@ -194,6 +194,7 @@ def test_wrong_overrides(overrides, said):
     assert len(str(caught.value)) < 300
 
 
+@pytest.mark.slow
 def test_thirty_thousand_parameters_take_no_time():
     start = time.process_time()
     names = [f"p{i}: p{i + 1}" for i in range(30_000)]

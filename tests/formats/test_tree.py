@@ -7,6 +7,7 @@ import time
 import pytest
 import yaml
 from formats.texts import HEAD, arm, error_of, place
+from sweeps import sweep
 
 from robokin.formats import read_text
 from robokin.formats.yaml_tree import Mapping, Scalar, Sequence, describe, read_tree
@@ -218,7 +219,7 @@ def test_deep_nesting_is_said_at_the_place_where_it_exceeds_the_limit(loader, te
 
 
 @pytest.mark.parametrize(("text", "at"), DEEP.values(), ids=DEEP)
-@pytest.mark.parametrize("limit", [33, 1000])
+@pytest.mark.parametrize("limit", sweep([33, 1000], 2))
 @pytest.mark.parametrize("late", [False, True], ids=["at the opening", "after it"])
 def test_that_place_does_not_depend_on_what_a_library_refuses(monkeypatch, text, at, limit, late):
     monkeypatch.delattr(yaml, "CSafeLoader", raising=False)
@@ -234,15 +235,18 @@ def test_deep_nesting_after_a_text_of_a_mebibyte(loader):
 
 @pytest.mark.parametrize(
     "text",
-    [
-        "a: '" + "[" * 2000 + "'\n",
-        'a: "' + "{a: " * 2000 + '"\n',
-        "# " + "[" * 2000 + "\na: 1 # " + "{" * 2000 + "\n",
-        "a: x" + "[" * 2000 + "\n",
-        "a: |\n  " + "[" * 2000 + "\n",
-        "a: [" + "[], " * 2000 + "]\n",
-        "a: [" + "{b: [1]}, " * 2000 + "]\n",
-    ],
+    sweep(
+        [
+            "a: '" + "[" * 2000 + "'\n",
+            'a: "' + "{a: " * 2000 + '"\n',
+            "# " + "[" * 2000 + "\na: 1 # " + "{" * 2000 + "\n",
+            "a: x" + "[" * 2000 + "\n",
+            "a: |\n  " + "[" * 2000 + "\n",
+            "a: [" + "[], " * 2000 + "]\n",
+            "a: [" + "{b: [1]}, " * 2000 + "]\n",
+        ],
+        4,
+    ),
 )
 def test_brackets_that_do_not_nest_are_not_counted(loader, text):
     assert list(entries(text)) == ["a"]
@@ -273,7 +277,7 @@ BOMBS = {
 }
 
 
-@pytest.mark.parametrize("bomb", BOMBS.values(), ids=BOMBS)
+@pytest.mark.parametrize("bomb", sweep(BOMBS.values(), 3), ids=BOMBS)
 def test_aliases_cannot_multiply(loader, bomb):
     start = time.process_time()
     assert "aliases written out" in error_of(bomb).message

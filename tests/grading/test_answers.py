@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from library_entries import names_of
+from sweeps import sweep
 
 import robokin
-from robokin.formats import library_names, load_any
 from robokin.grading.configuration_marks import mark_set, reached
 from robokin.grading.pose_difference import (
     PASS,
@@ -20,7 +21,7 @@ from robokin.grading.tolerance import Tolerance, default_tolerance
 from robokin.model import Robot
 from robokin.spatial import rotation_from_axis_angle, rotation_from_quaternion, rotation_transform, transform
 
-ROBOTS = [name for name in library_names() if isinstance(load_any(name), Robot) and load_any(name).n]
+ROBOTS = names_of(Robot, 1)
 SOLVED = ["puma560", "ur5", "stanford", "scara", "planar3r", "kr6-r900", "irb120", "spherical-wrist"]
 
 
@@ -34,7 +35,7 @@ def configuration(robot, rng):
     return rng.uniform(low, high)
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", sweep(ROBOTS, 4))
 def test_poses_both_ways(name, rng):
     robot = robokin.load(name)
     allowed = default_tolerance(robot)
@@ -119,7 +120,7 @@ def test_limits_are_inclusive_and_modulo_360():
 
 
 @pytest.mark.parametrize("name", SOLVED)
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", sweep(range(4), 4))
 def test_sets_of_solutions(name, seed):
     rng, robot = np.random.default_rng(seed), robokin.load(name)
     allowed = default_tolerance(robot)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.grading.answer_mistakes import joints_mistake, pose_mistake
@@ -143,7 +144,7 @@ def test_tables(name):
     assert of_table(robot, with_factors(robot, factor, angle)).name == "length and angle unit"
 
 
-@pytest.mark.parametrize("name", ["anthropomorphic", "puma560-craig", "stanford"])
+@pytest.mark.parametrize("name", sweep(["anthropomorphic", "puma560-craig", "stanford"], 3))
 def test_one_wrong_cell_is_named(name, rng):
     robot = robokin.load(name)
     allowed = default_tolerance(robot, table=True)
@@ -179,6 +180,7 @@ def test_a_wrong_cell_is_found_in_a_table_with_frames_of_its_own():
 # No false accusations --------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_random_wrong_answer_has_hardly_ever_a_known_mistake():
     """One in a hundred at most; and what is named is a coincidence of round angles."""
     rng = np.random.default_rng(11)
@@ -203,6 +205,7 @@ def test_a_random_wrong_answer_has_hardly_ever_a_known_mistake():
     assert named <= count / 100
 
 
+@pytest.mark.slow
 def test_a_random_wrong_table_has_hardly_ever_a_known_mistake():
     rng = np.random.default_rng(12)
     named = count = 0

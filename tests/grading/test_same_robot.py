@@ -6,9 +6,10 @@ from itertools import chain, combinations
 
 import numpy as np
 import pytest
+from library_entries import entry, names_of
+from sweeps import sweep
 
 import robokin
-from robokin.formats import library_names, load_any
 from robokin.grading.differences import difference_of
 from robokin.grading.same_robot import OPEN, compare_tables, match, skeleton_of
 from robokin.grading.tolerance import Tolerance, default_tolerance
@@ -17,7 +18,7 @@ from robokin.spatial import invert
 
 from .tables import redrawn, with_cell
 
-ROBOTS = [name for name in library_names() if isinstance(load_any(name), Robot) and load_any(name).n]
+ROBOTS = names_of(Robot, 1)
 SUBSETS = list(chain.from_iterable(combinations(OPEN, count) for count in range(5)))
 NOTHING_OPEN = frozenset()
 
@@ -44,7 +45,7 @@ def table(types, rng, convention="standard"):
 # The same --------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ROBOTS[::2])
+@pytest.mark.parametrize("name", sweep(ROBOTS[::2], 3))
 def test_other_frames_are_the_same_robot(name):
     rng, robot = seeded(name), robokin.load(name)
     allowed = default_tolerance(robot, table=True)
@@ -123,11 +124,11 @@ def changes(robot, allowed, factor):
             yield with_cell(robot, number, **{cell: getattr(row, cell) + step}), (number, cell)
 
 
-TABLES = [name for name in ROBOTS if robokin.load(name).convention != "frames"]
+TABLES = [name for name in ROBOTS if entry(name).convention != "frames"]
 
 
-@pytest.mark.parametrize("name", TABLES[::6])
-@pytest.mark.parametrize("factor", [1.05, -40.0])
+@pytest.mark.parametrize("name", sweep(TABLES[::6], 4))
+@pytest.mark.parametrize("factor", sweep([1.05, -40.0], 2))
 def test_a_changed_cell_is_not_the_same(name, factor):
     robot = robokin.load(name)
     allowed = default_tolerance(robot, table=True)
@@ -138,7 +139,7 @@ def test_a_changed_cell_is_not_the_same(name, factor):
         assert not match(right, skeleton_of(other), allowed, NOTHING_OPEN).same, place
 
 
-@pytest.mark.parametrize("name", [name for name in TABLES[::6] if "P" not in robokin.load(name).types])
+@pytest.mark.parametrize("name", sweep([name for name in TABLES[::6] if "P" not in entry(name).types], 4))
 def test_a_cell_changed_by_less_is_the_same(name):
     robot = robokin.load(name)
     allowed = default_tolerance(robot, table=True)
@@ -147,7 +148,7 @@ def test_a_cell_changed_by_less_is_the_same(name):
         assert match(right, skeleton_of(other), allowed, NOTHING_OPEN).same, place
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", sweep(range(12), 4))
 def test_sameness_is_that_of_the_poses(seed):
     """With nothing open: the same exactly when forward kinematics agree, whatever was changed in the table."""
     rng = np.random.default_rng(seed)
@@ -160,7 +161,7 @@ def test_sameness_is_that_of_the_poses(seed):
         assert match(skeleton_of(robot), skeleton_of(drawn), allowed, NOTHING_OPEN).same == agree
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", sweep(range(8), 4))
 def test_lengths_and_twists_tell_robots_apart_whatever_is_open(seed):
     rng = np.random.default_rng(100 + seed)
     rows = [
@@ -195,7 +196,7 @@ def test_a_mirrored_arm_is_another_one():
     assert not compare_tables(robot, drawn, allowed, frozenset(OPEN)).same
 
 
-@pytest.mark.parametrize("name", ["puma560", "ur5", "scara", "stanford", "planar3r", "iiwa7"])
+@pytest.mark.parametrize("name", sweep(["puma560", "ur5", "scara", "stanford", "planar3r", "iiwa7"], 3))
 def test_nothing_allowed_and_much_allowed(name):
     rng, robot = seeded(name), robokin.load(name)
     size = default_tolerance(robot).size

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 from inverse.truth import Scale, least_singular_value
+from library_entries import names_of
 
 import robokin
-from robokin.formats import library_names, load_any
 from robokin.formats.read import read_text
 from robokin.model import Joint, JointType, Robot
 
@@ -26,8 +26,7 @@ KINDS = ("random", *(f"grid {step}" for step in GRIDS), "q4 = 0", "at limits", *
 
 def library_arms(least=2, most=6):
     """The names of the library's robots with so many joints."""
-    entries = [load_any(name) for name in library_names()]
-    return [entry.id for entry in entries if isinstance(entry, Robot) and least <= entry.n <= most]
+    return names_of(Robot, least, most)
 
 
 def on_grid(robot, scale, rng, count, step):

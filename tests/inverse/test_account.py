@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inverse import arms, judge, truth
+from sweeps import sweep
 
 import robokin
 from robokin.inverse.analysis import analysis_of
@@ -46,7 +47,7 @@ def limited(robot, limits):
     )
 
 
-@pytest.mark.parametrize("side", [0, 1])
+@pytest.mark.parametrize("side", sweep([0, 1], 2))
 def test_a_root_of_four_solutions_at_a_limit(side):
     # Rounding puts a root that counts four times some 1e-6 rad beside where it is, which may be beyond the limit.
     q = np.radians([-90.0, -90.0, 90.0, -90.0, -90.0, 180.0])
@@ -97,6 +98,7 @@ def test_a_self_motion_that_meets_others_only_where_they_cross(q):
     assert judge.faults(CROSSED, scale, np.radians(q), T, result, known) == []
 
 
+@pytest.mark.slow
 def test_a_self_motion_on_which_no_path_ends_where_it_is_real():
     # With joints 2 and 3 at zero joints 1, 4, 5 and 6 are parallel; all paths to their curve end at complex values.
     q = np.radians([-5.82, 0.0, 0.0, 100.27, -100.72, 59.02])
@@ -118,7 +120,7 @@ def test_two_members_of_a_self_motion_that_seemed_to_stand_alone():
     assert judge.faults(ALONE, scale, q, T, result, known) == []
 
 
-@pytest.mark.parametrize("name", SCARAS)
+@pytest.mark.parametrize("name", sweep(SCARAS, 2))
 def test_the_counts_of_loops_with_skew_axes_agree(name):
     own = analysis_of(robokin.load(name)).own
     loops = [Skew(own, seed) for seed in (40, 41)]
@@ -128,7 +130,7 @@ def test_the_counts_of_loops_with_skew_axes_agree(name):
     assert start[0].values.shape[1] == 4
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", sweep(range(4), 4))
 def test_singular_configurations_of_random_chains_at_limits(seed):
     rng = np.random.default_rng([31, seed])
     while (robot := arms.random_chain(rng)).n < 5:
@@ -145,7 +147,7 @@ def test_singular_configurations_of_random_chains_at_limits(seed):
             assert not {"falsely complete", "unanswered"} & set(judge.faults(arm, scale, one, pose, result))
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", sweep(range(4), 4))
 def test_both_circuits_of_four_bar_linkages(seed):
     """Joints 1, 2, 4 and 5 are parallel where joint 3 is at zero: the pose leaves a four-bar linkage its motion."""
     rng = np.random.default_rng([32, seed])

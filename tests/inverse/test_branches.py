@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.formats import library_names, load_any
@@ -61,7 +62,7 @@ def names_at(robot, q, **more):
     return answers
 
 
-@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("name", sweep(ARMS, 5))
 def test_no_two_solutions_of_a_pose_have_one_name(name, rng):
     robot = robokin.load(name)
     for names, own in names_at(robot, random_values(robot, rng, 20)):
@@ -170,6 +171,7 @@ def calibrated():
     return replace(robot, rows=tuple(rows), poses={})
 
 
+@pytest.mark.slow
 def test_a_calibrated_arm_has_the_names_of_the_arm_that_it_is(rng):
     nominal, robot = robokin.load("ur5"), calibrated()
     q = random_values(nominal, rng, 40)
@@ -191,7 +193,7 @@ def test_a_number_is_the_same_with_and_without_limits(rng):
         assert [solution.branch for solution in first] == [solution.branch for solution in every[:2]]
 
 
-@pytest.mark.parametrize("name", ["iiwa14", "panda", "gen3", "xarm7", "j2s7s300"])
+@pytest.mark.parametrize("name", sweep(["iiwa14", "panda", "gen3", "xarm7", "j2s7s300"], 5))
 def test_seven_joints_at_one_held_value(name, rng):
     robot = robokin.load(name)
     window = analysis_of(robot).window

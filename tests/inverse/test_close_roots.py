@@ -10,6 +10,7 @@ from inverse.arms import OFFSET_WRIST, SPHERICAL_WRIST, configurations, random_c
 from inverse.judge import faults, listed
 from inverse.loops import RIGHT, parallel_loop, spherical_loop
 from inverse.truth import Scale, least_singular_value, search
+from sweeps import sweep
 
 import robokin
 from robokin.inverse import target_block
@@ -43,7 +44,7 @@ def answered(robot, q):
 
 @pytest.mark.parametrize(
     ("name", "q"),
-    [
+    sweep([
         ("crx10ia-lp", [-179.9999497903, 135.0000113712, -269.9999592868, 9.95356e-06, 180.0, 224.999951469]),
         ("crx3ia", [-90.000030359, -180.0, 90.0000309494, 179.9999502569, 90.0000450105, -179.9999688021]),
         ("epson-g6-651s", [89.9999703078, 5.36084e-05, 89.9992580009, -180.0000238943]),
@@ -52,7 +53,7 @@ def answered(robot, q):
         ("j2s6s300", [90.0000179549, 180.0000055598, 179.9999567229, 180.0000219808, 269.9999763492, 90.000012055]),
         ("rx160l", [-45.0000054829, -89.9999467501, -5.48196e-05, -45.0000431558, -89.9999657572, 44.9999752078]),
         ("stanford", [180.0000390029, 7.64963e-06, 787.399909392, -44.999993249, -89.9999966657, -5.34148e-05]),
-    ],
+    ], 4),
 )  # fmt: skip
 def test_two_roots_that_joint_values_hardly_tell_apart_are_listed_once(name, q):
     """They are 1.5e-6 apart, and the pose midway is off by 1e-13."""
@@ -63,11 +64,11 @@ def test_two_roots_that_joint_values_hardly_tell_apart_are_listed_once(name, q):
 
 @pytest.mark.parametrize(
     ("name", "q"),
-    [
+    sweep([
         ("crx20ia-l", [-90.000019602, 1.56636e-05, 89.9999980853, -90.0000468192, -3.77675e-05, 90.0000377606]),
         ("hc10", [-90.0000381726, -180.0, 4.87852e-05, -45.0000022374, 179.999987828, -179.9999469354]),
         ("irb1600", [-179.9999481469, -6.05401e-07, -90.0000098636, 90.000023869, -4.72607e-05, 1.53845e-06]),
-    ],
+    ], 3),
 )  # fmt: skip
 def test_what_leaves_the_pose_by_rounding_only_is_a_self_motion(name, q):
     """Along a curve of two rad the error is below 1e-12: members of it were listed as solutions that stand alone."""
@@ -120,7 +121,7 @@ def test_an_axis_through_the_wrist_is_no_reason_to_call_a_list_complete():
 
 
 @pytest.mark.parametrize("off", [1e-5, 3e-6, 1e-6])
-@pytest.mark.parametrize("name", ["lrmate200ic", "puma560", "tx2-90", "xarm6"])
+@pytest.mark.parametrize("name", sweep(["lrmate200ic", "puma560", "tx2-90", "xarm6"], 4))
 def test_a_wrist_that_is_nearly_straight_is_counted(name, off):
     """Newton's steps in complex numbers tell the ends of paths apart that are nearly singular."""
     robot = robokin.load(name)
@@ -178,7 +179,7 @@ def number_of(loop):
     return None if found is None else found[0].values.shape[1]
 
 
-@pytest.mark.parametrize("name", ["stanford", "z1", "scorbot-er4u"])
+@pytest.mark.parametrize("name", sweep(["stanford", "z1", "scorbot-er4u"], 3))
 def test_a_closed_form_has_no_fewer_branches_than_there_are_solutions(name):
     analysis = analysis_of(robokin.load(name))
     number = number_of(analysis.loop)
@@ -188,11 +189,14 @@ def test_a_closed_form_has_no_fewer_branches_than_there_are_solutions(name):
 
 @pytest.mark.parametrize(
     ("form", "make", "types"),
-    [
-        (SphericalTriple, spherical_loop, "RPR"),
-        (SphericalTriple, spherical_loop, "PRR"),
-        (ThreeParallel, parallel_loop, "RRP"),
-    ],
+    sweep(
+        [
+            (SphericalTriple, spherical_loop, "RPR"),
+            (SphericalTriple, spherical_loop, "PRR"),
+            (ThreeParallel, parallel_loop, "RRP"),
+        ],
+        3,
+    ),
 )
 def test_random_loops_with_closed_forms_have_no_more_solutions_than_branches(form, make, types, rng):
     loop = make(rng, 1, types, True)
@@ -238,7 +242,7 @@ def limits_around(robot, q, rng):
 
 
 @pytest.mark.parametrize("kind", ["grid 90", "round + 1e-08", "round + 1e-07", "round + 1e-06"])
-@pytest.mark.parametrize("name", ["kr5-scara-r350", "cobra-s800", "xmate-cr7", "irb140"])
+@pytest.mark.parametrize("name", sweep(["kr5-scara-r350", "cobra-s800", "xmate-cr7", "irb140"], 4))
 def test_limits_that_a_configuration_is_just_within(name, kind):
     """What stands for two roots that nearly meet may be outside the limits where one of the two is inside."""
     base = robokin.load(name)
@@ -274,6 +278,7 @@ def test_without_limits_the_wish_itself_is_first_however_often_its_joints_are_tu
         assert result.solutions[0].within_limits == bool(robot.within_limits(result.solutions[0].q))
 
 
+@pytest.mark.slow
 def test_a_self_motion_is_not_given_up_for_roots_beside_it():
     """With a stretched arm and a straight wrist the pose is hardly off at what is beside the self-motion."""
     robot, rng = SPHERICAL_WRIST, np.random.default_rng(6)
@@ -336,7 +341,7 @@ WITHIN = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("number", "values"), WITHIN)
+@pytest.mark.parametrize(("number", "values"), sweep(WITHIN, 2))
 def test_a_root_within_the_limits_is_not_given_up_for_one_outside(number, values):
     robot = random_chain(np.random.default_rng([560, number]))
     q = np.where(robot.revolute, np.radians(values), np.array(values) / 1000.0)

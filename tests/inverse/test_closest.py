@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.inverse.analysis import analysis_of
@@ -124,7 +125,7 @@ def test_a_stretched_arm(beyond, rng):
 
 
 @pytest.mark.parametrize("bounded", [True, False])
-@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("name", sweep(ARMS, 3))
 def test_no_configuration_comes_nearer(name, bounded, rng):
     """Against the best of many descents of the position alone, started anywhere."""
     robot = robokin.load(name)
@@ -195,7 +196,7 @@ def test_five_joints_turn_as_far_as_the_position_lets_them(name, rng):
 # The answers -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["ur5e", "scorbot", "panda"])
+@pytest.mark.parametrize("name", sweep(["ur5e", "scorbot", "panda"], 3))
 def test_alone_as_in_a_batch_to_the_last_digit(name, rng):
     robot = robokin.load(name)
     T = scattered(robot, analysis_of(robot), 20, rng)
@@ -205,7 +206,7 @@ def test_alone_as_in_a_batch_to_the_last_digit(name, rng):
             assert np.array_equal(alone[0], among[i])
 
 
-@pytest.mark.parametrize("task", ["pose", "approach", "position"])
+@pytest.mark.parametrize("task", sweep(["pose", "approach", "position"], 3))
 @pytest.mark.parametrize("limits", [True, False])
 def test_a_batch_says_what_the_targets_say_alone(task, limits, rng):
     robot = robokin.load("puma560")
@@ -274,7 +275,9 @@ def test_turned_by_a_degree_from_a_corner(name, degrees):
     assert_no_worse(robot, T, q)
 
 
-@pytest.mark.parametrize("name", ["puma560", "gp8", "z1", "xmate-sr3", "lrmate200id", "scorbot", "panda", "yumi-left"])
+@pytest.mark.parametrize(
+    "name", sweep(["puma560", "gp8", "z1", "xmate-sr3", "lrmate200id", "scorbot", "panda", "yumi-left"], 3)
+)
 def test_no_worse_than_a_configuration_near_the_target(name, rng):
     """Targets are turned by up to 0.01 rad from the pose of a configuration, so that its position is exact."""
     robot = robokin.load(name)
@@ -305,7 +308,9 @@ def test_more_initial_guesses_are_turned_and_put_on_the_limits(rng):
 # Solutions found by search -----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["xarm6", "piper-old", "big-yam", "puma560", "scorbot", "stanford-arte", "adept-one"])
+@pytest.mark.parametrize(
+    "name", sweep(["xarm6", "piper-old", "big-yam", "puma560", "scorbot", "stanford-arte", "adept-one"], 4)
+)
 def test_poses_on_a_grid_are_reached_within_the_limits(name, rng):
     robot = robokin.load(name)
     analysis = analysis_of(robot)

@@ -7,6 +7,7 @@ import pytest
 from inverse.arms import KINDS, configurations, dh_of, in_own_units, library_arms, random_chain
 from inverse.judge import differ, differs_alone, faults, listed, on_arc, shaken, solve
 from inverse.truth import REGULAR, Scale, errors, least_singular_value, search
+from sweeps import sweep
 
 import robokin
 from robokin.inverse.solutions import Arc, Family, Result, Solution
@@ -31,7 +32,7 @@ def laws_broken(robot, q, rng, searched):
     return out
 
 
-@pytest.mark.parametrize("part", range(10))
+@pytest.mark.parametrize("part", sweep(range(10), 10))
 def test_arms_of_the_library(part):
     out = []
     for name in library_arms()[part::10]:
@@ -43,7 +44,7 @@ def test_arms_of_the_library(part):
     assert out == []
 
 
-@pytest.mark.parametrize("part", range(5))
+@pytest.mark.parametrize("part", sweep(range(5), 5))
 def test_random_chains(part):
     out = []
     for k in range(6 * part, 6 * part + 6):

@@ -6,6 +6,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.inverse.self_motion.spread import well_spread
@@ -91,7 +92,7 @@ def test_many_targets_are_chosen_from_as_each_alone(rng):
         assert rows[0] == best[np.argmin(move[best])]
 
 
-@pytest.mark.parametrize(("name", "task"), REDUNDANT)
+@pytest.mark.parametrize(("name", "task"), sweep(REDUNDANT, 4))
 def test_what_is_listed_of_infinitely_many_is_well_spread(name, task, rng):
     robot = robokin.load(name)
     for q in values(robot, rng, 3):
@@ -110,7 +111,7 @@ def test_what_is_listed_of_infinitely_many_is_well_spread(name, task, rng):
             assert least(distances(robot, few, few)) >= np.max(random) - 1e-6
 
 
-@pytest.mark.parametrize(("name", "task"), REDUNDANT)
+@pytest.mark.parametrize(("name", "task"), sweep(REDUNDANT, 3))
 def test_the_nearest_comes_first(name, task, rng):
     robot = robokin.load(name)
     q = values(robot, rng, 1)[0]
@@ -148,7 +149,7 @@ def attains(robot, q, T, task):
 
 
 @pytest.mark.parametrize(("name", "task", "joint"), IDLE)
-@pytest.mark.parametrize("numeric", [False, True])
+@pytest.mark.parametrize("numeric", sweep([False, True], 2))
 def test_a_joint_that_only_moves_what_is_left_open_is_held(name, task, joint, numeric, rng):
     robot = robokin.load(name)
     rest = [i for i in range(robot.n) if i != joint - 1]
@@ -261,7 +262,7 @@ def assert_one_stands_for_a_family(robot, q, middle, held=0.0, exact=1e-12, **ar
     assert hits >= 0.99 * len(q)
 
 
-@pytest.mark.parametrize("name", ["puma560", "stanford", "irb140"])
+@pytest.mark.parametrize("name", sweep(["puma560", "stanford", "irb140"], 3))
 @pytest.mark.parametrize("middle", [0.0, np.pi])
 def test_one_stands_for_the_family_of_a_wrist(name, middle, rng):
     robot = robokin.load(name)
@@ -279,8 +280,8 @@ def test_one_stands_for_the_family_of_a_wrist_on_a_straight_elbow(rng):
     assert_one_stands_for_a_family(robokin.load("puma560"), q, 4, exact=1e-7)
 
 
-@pytest.mark.parametrize("first", [0, 1, 2, 3])
-@pytest.mark.parametrize("opposed", [False, True])
+@pytest.mark.parametrize("first", sweep([0, 1, 2, 3], 2))
+@pytest.mark.parametrize("opposed", sweep([False, True], 2))
 def test_one_stands_for_the_family_of_any_wrist(first, opposed, rng):
     robot = with_a_wrist(rng, first, 1.1, opposed)
     q = rng.uniform(-3, 3, (12, 6))
@@ -288,7 +289,7 @@ def test_one_stands_for_the_family_of_any_wrist(first, opposed, rng):
     assert_one_stands_for_a_family(robot, q, first + 1)
 
 
-@pytest.mark.parametrize("name", ["puma560", "stanford", "irb140"])
+@pytest.mark.parametrize("name", sweep(["puma560", "stanford", "irb140"], 3))
 def test_the_one_keeps_to_the_limits(name, rng):
     robot = robokin.load(name)
     q = values(robot, rng, 40)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.inverse.elimination import fourteen_functions as fourteen
@@ -144,7 +145,7 @@ def test_one_sliding_joint_anywhere(place):
         assert share_found(loop, split, wanted, steps=3) == 1.0
 
 
-@pytest.mark.parametrize("places", list(itertools.combinations(range(6), 2)))
+@pytest.mark.parametrize("places", sweep([(two,) for two in itertools.combinations(range(6), 2)], 3))
 def test_two_sliding_joints_anywhere(places):
     rng = np.random.default_rng(places)
     loop = random_loop(rng, "".join("P" if i in places else "R" for i in range(6)))
@@ -154,7 +155,7 @@ def test_two_sliding_joints_anywhere(places):
         assert share_found(loop, split, values_of(loop, rng, 30), steps=3) == 1.0
 
 
-@pytest.mark.parametrize("types", ["RRRRRR", "PRRRRR", "RRPRRR", "RPRRPR"])
+@pytest.mark.parametrize("types", sweep(["RRRRRR", "PRRRRR", "RRPRRR", "RPRRPR"], 4))
 def test_arms_with_zero_lengths_and_right_angles(types):
     rng = np.random.default_rng(11)
     for _ in range(6):
@@ -162,7 +163,7 @@ def test_arms_with_zero_lengths_and_right_angles(types):
         assert rescued(loop, choose_splits(loop), values_of(loop, rng, 20)) == 1.0
 
 
-@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("name", sweep(ARMS, 3))
 def test_arms_on_sale(name):
     loop = loop_of(chain_of(robokin.load(name)))
     splits, wanted = choose_splits(loop), values_of(loop, np.random.default_rng(1), 60)
@@ -170,7 +171,9 @@ def test_arms_on_sale(name):
     assert rescued(loop, splits, wanted) == 1.0
 
 
-@pytest.mark.parametrize("name", ["crx10ia", "j2n6s200", "xarm6", "hc10", "gen3-lite", "piper-old", "crx20ia-l"])
+@pytest.mark.parametrize(
+    "name", sweep(["crx10ia", "j2n6s200", "xarm6", "hc10", "gen3-lite", "piper-old", "crx20ia-l"], 4)
+)
 def test_an_elimination_finds_all_sixteen_complex_solutions_of_an_arm_on_sale(name):
     """Six joints have at most 16 (E. J. F. Primrose, Mech. Mach. Theory 21, 1986), and these arms have them all."""
     loop = loop_of(chain_of(robokin.load(name)))
@@ -185,8 +188,8 @@ def test_an_elimination_finds_all_sixteen_complex_solutions_of_an_arm_on_sale(na
     assert counted.kept.sum() + (counted.kept & complex_).sum() == counted.number.sum()
 
 
-@pytest.mark.parametrize("name", ["crx10ia", "j2n6s200", "xarm6", "hc10", "gen3-lite", "piper-old"])
-@pytest.mark.parametrize("distance", [1e-2, 1e-4, 1e-5])
+@pytest.mark.parametrize("name", sweep(["crx10ia", "j2n6s200", "xarm6", "hc10", "gen3-lite", "piper-old"], 3))
+@pytest.mark.parametrize("distance", sweep([1e-2, 1e-4, 1e-5], 3))
 def test_near_singular_poses(name, distance):
     loop = loop_of(chain_of(robokin.load(name)))
     wanted = singular_values_of_joints(loop, np.random.default_rng(2), 12)
@@ -196,7 +199,7 @@ def test_near_singular_poses(name, distance):
     assert len(np.unique(hits)) == len(wanted)
 
 
-@pytest.mark.parametrize("name", ["crx10ia", "xarm6", "hc10", "manocha-canny-1994"])
+@pytest.mark.parametrize("name", sweep(["crx10ia", "xarm6", "hc10", "manocha-canny-1994"], 4))
 def test_singular_poses_have_an_answer(name):
     loop = loop_of(chain_of(robokin.load(name)))
     wanted = singular_values_of_joints(loop, np.random.default_rng(4), 12)

@@ -7,6 +7,7 @@ import pytest
 from inverse.arms import configurations, on_grid, table
 from inverse.judge import breaking, has, listed, solve
 from inverse.truth import Scale
+from sweeps import sweep
 
 import robokin
 from robokin.kinematics.structure import structure_of
@@ -46,7 +47,9 @@ def test_the_nearest_configuration_was_not_the_nearest(name, q):
     assert_nearest(robot, np.radians(q))
 
 
-@pytest.mark.parametrize("name", ["puma560", "gp8", "z1", "irb120", "panda", "fr3", "yumi-left", "r1pro-right"])
+@pytest.mark.parametrize(
+    "name", sweep(["puma560", "gp8", "z1", "irb120", "panda", "fr3", "yumi-left", "r1pro-right"], 4)
+)
 def test_the_nearest_configuration_at_limits(name):
     robot = robokin.load(name)
     rng = np.random.default_rng(15)
@@ -65,7 +68,7 @@ def test_approach_of_the_cylindrical_arm():
     assert has(robot, Scale(robot), q, result)
 
 
-@pytest.mark.parametrize("types", ["PR", "RP", "RPP", "PRP", "PPR"])
+@pytest.mark.parametrize("types", sweep(["PR", "RP", "RPP", "PRP", "PPR"], 3))
 def test_approach_of_random_arms_with_few_joints(types):
     """PR arms: of 1,000 random poses 98 were called unattainable."""
     rng = np.random.default_rng(7)
@@ -85,7 +88,7 @@ def test_approach_of_random_arms_with_few_joints(types):
 # Nearest to a configuration where there is a self-motion ------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["ur5e", "ur10e", "cr5", "puma560", "gp8", "xmate-cr7"])
+@pytest.mark.parametrize("name", sweep(["ur5e", "ur10e", "cr5", "puma560", "gp8", "xmate-cr7"], 3))
 def test_a_configuration_that_solves_the_pose_is_the_nearest_to_itself(name):
     """With q5 = 0 another member of the self-motion came first, up to 131° away, at 40 of 40 poses."""
     robot = robokin.load(name)
@@ -103,7 +106,9 @@ def test_a_configuration_that_solves_the_pose_is_the_nearest_to_itself(name):
 # Redundant arms -------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["yumi-right", "yumi-left", "gen72", "r1pro-left", "r1pro-right", "panda", "iiwa14"])
+@pytest.mark.parametrize(
+    "name", sweep(["yumi-right", "yumi-left", "gen72", "r1pro-left", "r1pro-right", "panda", "iiwa14"], 3)
+)
 def test_poses_of_redundant_arms_with_all_joints_at_limits(name):
     """Seven of 40 such poses of yumi-right were called outside the joint limits without a proof."""
     robot = robokin.load(name)
@@ -204,6 +209,7 @@ def _distal_rows(z, o):
         x, at = normal, end
 
 
+@pytest.mark.slow
 def test_a_calibrated_arm_is_what_it_is_wherever_its_frames_stand():
     robot, nominal = calibrated_ur5(), robokin.load("ur5")
     assert max(abs(row.d) for row in robot.rows) > 50.0
@@ -228,6 +234,7 @@ def test_a_very_long_slide():
         assert np.allclose(robokin.forward_kinematics(robot, solution.q)[:3, 3], T[:3, 3], rtol=1e-8)
 
 
+@pytest.mark.slow
 def test_wide_limits_end_in_an_answer():
     rng = np.random.default_rng(15)
     for limits in [(-1e15, 1e15), (0.0, 1e15)]:
@@ -243,7 +250,7 @@ def test_wide_limits_end_in_an_answer():
             assert result.solutions or result.nearest is not None
 
 
-@pytest.mark.parametrize("types", ["RPRPRR", "PRRPRR", "RRPRPR", "RPRRRP", "PRPRRR"])
+@pytest.mark.parametrize("types", sweep(["RRPRPR", "RPRPRR", "PRRPRR", "RPRRRP", "PRPRRR"], 5))
 def test_no_warning_is_given(types):
     """Divisions by zero and overflows were told on stderr; here every warning is an error."""
     rng = np.random.default_rng(164)

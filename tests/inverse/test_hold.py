@@ -7,6 +7,7 @@ import weakref
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
@@ -39,7 +40,9 @@ def test_the_part_moves_as_the_whole_does(name, rng):
         assert np.array_equal(arm.part.limits, robot.limits[arm.free])
 
 
-@pytest.mark.parametrize(("name", "joint"), [("panda", 2), ("panda", 6), ("iiwa14", 2), ("puma560", 0), ("scara", 2)])
+@pytest.mark.parametrize(
+    ("name", "joint"), sweep([("panda", 2), ("panda", 6), ("iiwa14", 2), ("puma560", 0), ("scara", 2)], 3)
+)
 def test_every_branch_at_the_held_value(name, joint, rng):
     robot = robokin.load(name)
     for q in drawn(robot, rng, 8):
@@ -69,6 +72,7 @@ def test_a_redundant_arm_has_all_of_them_where_its_wrist_and_shoulder_are_spheri
     assert 8 in counts
 
 
+@pytest.mark.slow
 def test_names_and_numbers_are_the_whole_robot_s():
     robot = robokin.load("puma560")
     q = np.radians([10.0, -30.0, 120.0, 20.0, 40.0, 50.0])

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inverse.loops import closing_of, gaps, named, random_links, with_types
+from sweeps import sweep
 
 import robokin
 from robokin.inverse.analysis import General, analysis_of
@@ -86,7 +87,7 @@ def missing(loop, account, index, values):
     return least > 1e-6
 
 
-@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("name", sweep(NUMBERS, 4))
 def test_the_number_of_complex_solutions_of_known_arms(name):
     assert homotopy(name).count == NUMBERS[name]
 
@@ -115,8 +116,8 @@ def test_an_arm_that_is_singular_everywhere_has_no_number():
         found.account(np.eye(4)[None])
 
 
-@pytest.mark.parametrize("kind", ["random", "90°", "30°", "q4 = 0", "one ulp off 90°", "near 30°"])
-@pytest.mark.parametrize("name", ["xarm6", "ur5e", "stanford"])
+@pytest.mark.parametrize("kind", sweep(["random", "90°", "30°", "q4 = 0", "one ulp off 90°", "near 30°"], 2))
+@pytest.mark.parametrize("name", sweep(["xarm6", "ur5e", "stanford"], 3))
 def test_no_regular_solution_is_missing_where_the_account_is_closed(name, kind):
     found, rng = homotopy(name), np.random.default_rng(8)
     loop = found.loop
@@ -156,7 +157,7 @@ def test_generic_targets_are_reached_by_all_solutions():
     assert account.words(0) == f"of 16 paths 16 end in regular solutions ({account.real[0]} real)"
 
 
-@pytest.mark.parametrize("example", EXAMPLES[::3], ids=lambda example: example["id"])
+@pytest.mark.parametrize("example", sweep(EXAMPLES[::3], 2), ids=lambda example: example["id"])
 def test_published_examples_have_their_number_of_real_solutions(example):
     rows = [
         standard_dh(0.0 if kind == "R" else np.deg2rad(theta), d if kind == "R" else 0.0, a, np.deg2rad(alpha))
@@ -225,7 +226,7 @@ def test_singular_candidates_and_those_that_do_not_close_are_not_counted():
     assert not regular_and_distinct(straight, index, np.zeros((3, 6)), np.zeros(3)).any()  # q5 = 0
 
 
-@pytest.mark.parametrize("name", ["xarm6", "hc10", "puma560", "ur5e"])
+@pytest.mark.parametrize("name", sweep(["xarm6", "hc10", "puma560", "ur5e"], 4))
 def test_starts_close_by_lead_where_far_ones_do(name):
     """The kinds of ends are as many, and the regular ones the same: at random poses and at singular ones."""
     analysis = analysis_of(robokin.load(name))

@@ -89,6 +89,7 @@ def test_arms_that_place_a_point_follow_its_line(name):
     assert path.length == pytest.approx(np.linalg.norm(last - p[0]), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_line_out_of_reach_ends_at_the_boundary():
     robot = robokin.load("planar2r")
     T = np.eye(4)

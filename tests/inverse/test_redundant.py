@@ -9,6 +9,7 @@ import pytest
 from inverse.arms import with_limits
 from inverse.judge import on_arc
 from inverse.truth import Scale
+from sweeps import sweep
 
 import robokin
 from robokin.inverse.analysis import analysis_of
@@ -41,7 +42,7 @@ def check(robot, T, index, q):
     assert robot.within_limits(q).all()
 
 
-@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("name", sweep(ARMS, 4))
 def test_every_pose_within_the_limits_is_answered(name, rng):
     robot = robokin.load(name)
     T = robokin.forward_kinematics(robot, within(robot, 60, rng))
@@ -76,7 +77,7 @@ SINGLE = [
 """All joints but one at limits: the solution is a single point of its self-motion, which no search came upon."""
 
 
-@pytest.mark.parametrize(("name", "q"), SINGLE)
+@pytest.mark.parametrize(("name", "q"), sweep(SINGLE, 2))
 def test_single_points_of_self_motions(name, q):
     robot = robokin.load(name)
     T = robokin.forward_kinematics(robot, np.array(q))
@@ -118,7 +119,7 @@ NARROW = [(-2.3093, 2.3093), (-1.5133, 1.5133), (-2.4937, 2.4937), (-2.7478, -0.
 """Joint limits of the FR3 in an older file of its maker."""
 
 
-@pytest.mark.parametrize(("name", "q"), SHORT)
+@pytest.mark.parametrize(("name", "q"), sweep(SHORT, 2))
 def test_as_many_as_asked_for_on_short_pieces(name, q):
     robot = robokin.load(name)
     if name == "fr3":
@@ -133,8 +134,8 @@ def test_as_many_as_asked_for_on_short_pieces(name, q):
 
 @pytest.mark.parametrize(
     ("name", "task"),
-    [("human-arm", "pose"), ("human-body", "pose"), ("puma560", "position"), ("xarm6", "position"),
-     ("panda", "approach"), ("planar3r", "position")],
+    sweep([("human-arm", "pose"), ("human-body", "pose"), ("puma560", "position"), ("xarm6", "position"),
+     ("panda", "approach"), ("planar3r", "position")], 3),
 )  # fmt: skip
 def test_as_many_as_asked_for_of_whatever_dimension(name, task, rng):
     """With more joints to spare, or less asked for, there are as many as one likes beside a configuration inside."""
@@ -153,6 +154,7 @@ def test_as_many_as_asked_for_of_whatever_dimension(name, task, rng):
         assert apart(robot, solutions) > SAME
 
 
+@pytest.mark.slow
 def test_fewer_are_the_first_of_more(rng):
     robot = robokin.load("panda")
     T = robokin.forward_kinematics(robot, within(robot, 24, rng))
@@ -233,7 +235,7 @@ ON_INTERVALS = [
 """Configurations on self-motions that none of the sixteen listed solutions is on."""
 
 
-@pytest.mark.parametrize(("name", "q"), ON_INTERVALS)
+@pytest.mark.parametrize(("name", "q"), sweep(ON_INTERVALS, 4))
 def test_intervals_hold_what_is_known_and_end_on_limits(name, q):
     robot, q = robokin.load(name), np.array(q)
     T = robokin.forward_kinematics(robot, q)
@@ -248,7 +250,7 @@ def test_intervals_hold_what_is_known_and_end_on_limits(name, q):
         assert arc.whole or np.max(np.abs(margins[[0, -1]])) <= 1e-9
 
 
-@pytest.mark.parametrize("name", ["panda", "gen3", "fr3"])
+@pytest.mark.parametrize("name", sweep(["panda", "gen3", "fr3"], 3))
 def test_arms_with_narrow_limits_are_answered(name, rng):
     robot = robokin.load(name)
     low, high = np.where(np.isinf(robot.limits), np.pi * np.array([-1.0, 1.0]), robot.limits).T

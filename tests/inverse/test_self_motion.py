@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from inverse.arms import OFFSET_WRIST, SPHERICAL_WRIST
+from sweeps import sweep
 
 import robokin
 from robokin.inverse.elimination.loop import chain_size
@@ -127,7 +128,7 @@ def test_curves_that_nearly_cross_are_told_apart():
     assert_reaches(robot, T, curve.q)
 
 
-@pytest.mark.parametrize(("robot", "values", "joints"), CURVES)
+@pytest.mark.parametrize(("robot", "values", "joints"), sweep(CURVES, 4))
 def test_every_member_has_the_same_family(robot, values, joints, rng):
     robot, chain, size, q, T = arm(robot, values)
     curve = trace(chain, T, q, size)
@@ -238,7 +239,7 @@ def test_no_arc_where_a_joint_that_stands_still_is_outside():
     assert nearest_on(curve, chain, T, q, robot.limits, size) is None
 
 
-@pytest.mark.parametrize(("robot", "values", "joints"), CURVES)
+@pytest.mark.parametrize(("robot", "values", "joints"), sweep(CURVES, 4))
 def test_the_nearest_member_is_the_nearest(robot, values, joints, rng):
     robot, chain, size, q, T = arm(robot, values)
     curve = trace(chain, T, q, size)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.inverse.analysis import analysis_of
@@ -61,7 +62,7 @@ def test_near_singular_by_determinants_is_near_singular_by_values(rng):
             assert np.array_equal(nearly_singular(analysis.own, q, analysis.size, below), values < below)
 
 
-@pytest.mark.parametrize("name", ["xarm6", "piper-old", "crx10ia"])
+@pytest.mark.parametrize("name", sweep(["xarm6", "piper-old", "crx10ia"], 3))
 def test_what_is_counted_next_door_is_what_all_ways_find(name, rng, monkeypatch):
     robot = robokin.load(name)
     analysis = analysis_of(robot, "pose")
@@ -82,6 +83,7 @@ def test_what_is_counted_next_door_is_what_all_ways_find(name, rng, monkeypatch)
     assert np.allclose(counted.q, followed.q, rtol=0, atol=1e-8)
 
 
+@pytest.mark.slow
 def test_multiple_roots_of_many_are_those_of_each(rng, monkeypatch):
     robot = robokin.load("hc10")
     calls = []

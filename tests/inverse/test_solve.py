@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import data
+from library_entries import names_of
+from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
-from robokin.formats import library_names, load_any
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.solve import solve_many
 from robokin.kernel.joint_axes import nearest_point
@@ -22,8 +23,7 @@ TURN = 2 * np.pi
 
 
 def arms(least, most):
-    entries = [load_any(name) for name in library_names()]
-    return [entry.id for entry in entries if isinstance(entry, Robot) and least <= entry.n <= most]
+    return names_of(Robot, least, most)
 
 
 def gaps(robot, found, q):
@@ -58,7 +58,7 @@ def assert_closes(robot, result, T):
     assert np.max(rotation_angle(targets[:, :3, :3], poses[:, :3, :3]), initial=0.0) <= 1.1e-9
 
 
-@pytest.mark.parametrize("name", arms(1, 6))
+@pytest.mark.parametrize("name", sweep(arms(1, 6), 5))
 def test_every_arm_of_the_library_with_at_most_six_joints(name, rng):
     robot = robokin.load(name)
     analysis = analysis_of(robot)
@@ -86,8 +86,8 @@ def random_arm(rng, n, sliding, special):
     return Robot("random arm", tuple(rows))
 
 
-@pytest.mark.parametrize("sliding", [0, 1, 2, 3])
-@pytest.mark.parametrize("special", [False, True])
+@pytest.mark.parametrize("sliding", sweep([0, 1, 2, 3], 4))
+@pytest.mark.parametrize("special", sweep([False, True], 2))
 @pytest.mark.parametrize("n", [3, 4, 5, 6])
 def test_random_arms(n, sliding, special):
     """376 arms in all; those whose joints depend on each other everywhere have no isolated solutions."""
@@ -145,8 +145,8 @@ def generated(robot, q):
     return np.mean(result.count > 0), np.mean(hit)
 
 
-@pytest.mark.parametrize("name", ["puma560", "ur5e"])
-@pytest.mark.parametrize("q5", [0.0, np.pi, 1e-9, 1e-7, 1e-5, 1e-3])
+@pytest.mark.parametrize("name", sweep(["puma560", "ur5e"], 2))
+@pytest.mark.parametrize("q5", sweep([0.0, np.pi, 1e-9, 1e-7, 1e-5, 1e-3], 4))
 def test_wrist_singularities(name, q5, rng):
     q = rng.uniform(-3, 3, (40, 6))
     q[:, 4] = q5
@@ -159,7 +159,7 @@ def test_wrist_singularities(name, q5, rng):
 ELBOWS = {"puma560": np.arctan2(433.07, -20.32) + np.array([0.0, np.pi]), "ur5e": np.array([0.0, np.pi])}
 
 
-@pytest.mark.parametrize("name", ["puma560", "ur5e"])
+@pytest.mark.parametrize("name", sweep(["puma560", "ur5e"], 2))
 def test_elbow_singularities(name, rng):
     robot = robokin.load(name)
     for value in ELBOWS[name]:
@@ -171,7 +171,7 @@ def test_elbow_singularities(name, rng):
         assert hit >= 0.99
 
 
-@pytest.mark.parametrize("name", ["puma560", "ur5e"])
+@pytest.mark.parametrize("name", sweep(["puma560", "ur5e"], 2))
 def test_joint_values_that_are_multiples_of_90_degrees(name, rng):
     answered, hit = generated(robokin.load(name), rng.integers(-1, 3, (60, 6)) * RIGHT)
     assert answered == 1.0
@@ -188,6 +188,7 @@ def test_a_self_motion_is_named():
 # The boundary, nearly special geometry, limits ----------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_boundary_of_the_reach():
     robot = robokin.load("planar2r")
     reach = robot.parameters["a1"] + robot.parameters["a2"]
@@ -201,7 +202,7 @@ def test_the_boundary_of_the_reach():
 
 
 @pytest.mark.parametrize("name", ["puma560", "ur5e"])
-@pytest.mark.parametrize("off", [1e-12, 1e-10, 1e-9, 1e-8, 1e-6, 1e-4, 1e-2])
+@pytest.mark.parametrize("off", sweep([1e-8, 1e-12, 1e-10, 1e-9, 1e-6, 1e-4, 1e-2], 7))
 def test_calibrated_arms(name, off, rng):
     """Arms whose axes nearly meet or are nearly parallel, as calibration finds them."""
     rows = tuple(

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from library_entries import names_of
+from sweeps import sweep
 
 import robokin
-from robokin.formats import library_names, load_any
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.solve import TASKS, solve_many
 from robokin.kernel.frames import frames
@@ -19,8 +20,7 @@ REGULAR = 1e-4
 
 
 def few_joints():
-    entries = [load_any(name) for name in library_names()]
-    return [entry.id for entry in entries if isinstance(entry, Robot) and 1 <= entry.n <= 6]
+    return names_of(Robot, 1, 6)
 
 
 def random_chain(rng):
@@ -82,15 +82,16 @@ def assert_found(robot, task, q, T):
     assert np.max(nearest[must]) < 1e-5
 
 
+@pytest.mark.parametrize("part", sweep(range(8), 8))
 @pytest.mark.parametrize("task", ["approach", "position"])
-def test_every_arm_of_the_library_with_at_most_six_joints(task, rng):
-    for name in few_joints():
+def test_every_arm_of_the_library_with_at_most_six_joints(task, part, rng):
+    for name in few_joints()[part::8]:
         robot = robokin.load(name)
         q = configurations(robot, rng, 20 if analysis_of(robot, task).complete else 2)
         assert_found(robot, task, q, robokin.forward_kinematics(robot, q))
 
 
-@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("task", sweep(TASKS, 3))
 def test_random_chains(task):
     rng = np.random.default_rng(31)
     for _ in range(60):
@@ -104,7 +105,7 @@ def test_random_chains(task):
 
 
 @pytest.mark.parametrize("task", ["approach", "position"])
-@pytest.mark.parametrize("rows", ["RP", "PR", "PP", "RPP", "PRP", "PPR", "RRP", "PPP"])
+@pytest.mark.parametrize("rows", sweep(["RP", "PR", "PP", "RPP", "PRP", "PPR", "RRP", "PPP"], 4))
 def test_round_values_of_arms_with_right_angles(task, rows):
     """Of a cylindrical arm the roll is at zero in each pose that forward kinematics gives."""
     rng = np.random.default_rng(len(rows))

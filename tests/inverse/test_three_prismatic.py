@@ -7,6 +7,7 @@ import itertools
 import numpy as np
 import pytest
 from inverse.loops import outcome, random_links, regular, right_angles, values_of
+from sweeps import sweep
 
 from robokin.inverse.closed_form.three_prismatic import ThreePrismatic
 from robokin.inverse.elimination.loop import Loop
@@ -20,7 +21,7 @@ def random_loop(rng, sliding, special):
     return Loop(revolute, random_links(rng, special), np.eye(4), np.eye(4), 1.0)
 
 
-@pytest.mark.parametrize("special", [False, True])
+@pytest.mark.parametrize("special", sweep([False, True], 2))
 @pytest.mark.parametrize("sliding", ORDERS)
 def test_the_joints_that_made_the_pose_are_found(sliding, special, rng):
     tried = 0

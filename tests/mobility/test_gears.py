@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mobility.linkages import unit
+from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
@@ -28,7 +29,7 @@ RATIOS = {
 }
 
 
-@pytest.mark.parametrize(("name", "first", "second"), RATIOS)
+@pytest.mark.parametrize(("name", "first", "second"), sweep(RATIOS, 3))
 def test_wheels_of_the_library_turn_at_their_ratio(name, first, second):
     found = trace(robokin.load_mechanism(name), 7)
     assert found.closed
@@ -88,7 +89,7 @@ def turn_about(T, axis):
     return np.concatenate([[0.0], np.cumsum(np.arcsin(np.clip(0.5 * w @ axis, -1.0, 1.0)))])
 
 
-@pytest.mark.parametrize("space", ["planar", "spatial"])
+@pytest.mark.parametrize("space", sweep(["planar", "spatial"], 2))
 @pytest.mark.parametrize("carrier_turns", [False, True])
 def test_trains_of_gears_count_and_turn_as_their_ratios_say(space, carrier_turns, rng):
     for _ in range(2):
@@ -138,7 +139,7 @@ def ratio_of(gear, first="at: [0, 0]", second="at: [30, 0]", space="planar"):
 
 @pytest.mark.parametrize(
     ("gear", "expected"),
-    [
+    sweep([
         ("type: gear, links: [a, b], teeth: [10, 20]", -0.5), ("type: gear, links: [b, a], teeth: [20, 10]", -0.5),
         ("type: gear, links: [a, b], teeth: [10, 20], at: [10, 0]", -0.5),
         ("type: gear, links: [a, b], teeth: [10, 40], at: [-10, 0]", 0.25),
@@ -150,7 +151,7 @@ def ratio_of(gear, first="at: [0, 0]", second="at: [30, 0]", space="planar"):
         ("type: belt, links: [a, b], radii: [5, 20], crossed: true", -0.25),
         ("type: belt, links: [a, b], radii: [5, -20]", -0.25), ("type: gear, links: [a, b], ratio: 20/6", 0.3),
         ("type: gear, links: [a, b], ratio: 3, carrier: ground", 1 / 3),
-    ],
+    ], 4),
 )  # fmt: skip
 def test_senses(gear, expected):
     assert ratio_of(gear) == pytest.approx(expected, abs=1e-9)

@@ -9,6 +9,7 @@ import pytest
 from mobility import literature
 from mobility.linkages import linkage, unit
 from mobility.test_library import anywhere
+from sweeps import sweep
 
 from robokin.mobility.trace import trace
 from robokin.mobility.verdict import mobility_of
@@ -21,7 +22,7 @@ def dimensions(found):
     return [size for size, _ in found.branches]
 
 
-@pytest.mark.parametrize("name, mechanism, branches, order", ENTRIES, ids=[name for name, *_ in ENTRIES])
+@pytest.mark.parametrize("name, mechanism, branches, order", sweep(ENTRIES, 3), ids=[name for name, *_ in ENTRIES])
 def test_the_freedom_is_that_of_the_literature(name, mechanism, branches, order):
     for found in (mobility_of(mechanism), mobility_of(anywhere(mechanism, np.random.default_rng(3), 1e3))):
         assert dimensions(found) == branches

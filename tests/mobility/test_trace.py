@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mobility.linkages import bennett, four_bar, generic_loop, linkage, slider_crank
+from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
@@ -34,8 +35,11 @@ def gaps(found):
 
 @pytest.mark.parametrize(
     "mechanism",
-    [four_bar([(0, 0), (1, 2), (4, 3), (5, 0.5)]), four_bar(PARALLELOGRAM), slider_crank(), bennett(), generic_loop(7),
-     robokin.load_mechanism("sarrus"), robokin.load_mechanism("jansen-leg"), robokin.load_mechanism("rssr")],
+    sweep([
+        four_bar([(0, 0), (1, 2), (4, 3), (5, 0.5)]), four_bar(PARALLELOGRAM), slider_crank(), bennett(),
+        generic_loop(7), robokin.load_mechanism("sarrus"), robokin.load_mechanism("jansen-leg"),
+        robokin.load_mechanism("rssr"),
+    ], 4),
     ids=["four-bar", "parallelogram", "slider-crank", "Bennett", "7R", "Sarrus", "Jansen", "RSSR"],
 )  # fmt: skip
 def test_the_loops_stay_closed(mechanism):
@@ -112,6 +116,7 @@ def test_other_drives_are_held():
     assert np.ptp(found.values[:, found.labels.index(found.driven)]) > 0.5
 
 
+@pytest.mark.slow
 def test_joints_of_several_freedoms_have_numbered_values():
     found = trace(robokin.load_mechanism("rssr"), 5)
     assert len(found.labels) == found.values.shape[1] == 8

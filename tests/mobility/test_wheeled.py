@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from library_entries import names_of
 
 import robokin
-from robokin.formats import library_names, load_any
 from robokin.mobility.manoeuvrability import manoeuvrability_of
 from robokin.mobility.wheel_rows import WheelFrame, kernel_of, sliding_row
 from robokin.model import Wheel, WheeledBase
 
-BASES = [name for name in library_names() if isinstance(load_any(name), WheeledBase)]
+BASES = names_of(WheeledBase)
 
 # Degrees of mobility and steerability, and what the base can get about in: G. Campion, G. Bastin, B. d'Andréa-Novel,
 # IEEE Trans. Robotics and Automation 12(1), 1996, for the five types; the last four by hand from their definitions.

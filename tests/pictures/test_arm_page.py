@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.formats.library import library_names, load_any
@@ -86,7 +87,7 @@ def within_sliders(page, rng, count=POSITIONS):
 
 
 @needs_browser
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", sweep(ROBOTS, 4))
 def test_forward_kinematics_in_the_page_is_pythons(name, load, rng, tmp_path):
     robot = load(name)
     page = page_of(robot)
@@ -169,6 +170,7 @@ def test_a_page_needs_no_network_and_no_matplotlib(monkeypatch):
     assert "<title>PUMA 560</title>" in text
 
 
+@pytest.mark.slow
 def test_every_robot_of_the_library_has_a_small_page():
     for name in library_names():
         robot = load_any(name, {})

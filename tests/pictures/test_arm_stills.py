@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
@@ -28,7 +29,7 @@ def words(data):
 
 
 @pytest.mark.parametrize(("kind", "start"), [("png", b"\x89PNG\r\n\x1a\n"), ("pdf", b"%PDF-"), ("svg", b"<?xml")])
-@pytest.mark.parametrize("name", ["stanford", "planar3r"])
+@pytest.mark.parametrize("name", sweep(["stanford", "planar3r"], 2))
 def test_a_file_is_what_its_ending_says_and_always_the_same(name, kind, start):
     data = arm_still(scene(name), kind)
     assert data.startswith(start)
@@ -49,7 +50,7 @@ def test_a_planar_arm_has_two_axes_to_one_scale():
     assert "z [m]" not in text
 
 
-@pytest.mark.parametrize("turned", [True, False])
+@pytest.mark.parametrize("turned", sweep([True, False], 2))
 def test_ghosts_are_named_and_the_target_is_shown(turned):
     robot = robokin.load("planar3r")
     postures = [Posture(np.zeros(3), "straight"), Posture(np.ones(3), "a name & more", ghost=True)]

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from sweeps import sweep
 
 from robokin.workspace.region import Region
 from robokin.workspace.size_cells import cells_of, checked, poisson_limit, split_cells
@@ -79,7 +80,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", sweep(CASES, 4))
 def test_the_truth_is_within_the_bound(name: str) -> None:
     inside, region, truth = CASES[name]
     measures = [set_measure(inside, region, 6000, seed) for seed in range(40)]
@@ -88,7 +89,7 @@ def test_the_truth_is_within_the_bound(name: str) -> None:
     assert all(found.evaluations <= 6000 for found in measures)
 
 
-@pytest.mark.parametrize("name", ["slabs", "dust", "shell"])
+@pytest.mark.parametrize("name", sweep(["slabs", "dust", "shell"], 3))
 def test_there_is_no_bias(name: str) -> None:
     inside, region, truth = CASES[name]
     values = np.array([set_measure(inside, region, 3000, seed).value for seed in range(80)])

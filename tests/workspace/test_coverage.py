@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sweeps import sweep
 from workspace.known_sizes import FAMILIES, SCALES, arm, general_arm, known_arm, planar_2r, revolute
 
 from robokin.model import Joint, JointType, Robot
@@ -28,7 +29,7 @@ def size_of(space, samples, seed=0):
     return measure(space, bounds, samples, seed, 1)[0]
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", sweep(FAMILIES, 3))
 def test_known_sizes_are_within_their_bounds(family):
     outside = runs = 0
     for number in range(2 if family in SPARE else 4 if family in ESTIMATED else 8):
@@ -61,7 +62,7 @@ def test_a_jump_at_a_limit_is_no_chance(samples, seed):
     assert abs(found.value - 3.0 * np.pi) <= found.error <= 1e-10
 
 
-@pytest.mark.parametrize("number", range(4))
+@pytest.mark.parametrize("number", sweep(range(4), 4))
 def test_few_points_agree_with_many(number):
     space = space_of(general_arm(number))
     assert space.dimension == len(space.moving) == 3
@@ -119,6 +120,7 @@ def test_an_integral_of_one_variable_is_within_its_bound():
         assert abs(value - exact) <= error
 
 
+@pytest.mark.slow
 def test_an_integral_of_two_variables_is_within_its_bound():
     """A disc, a half plane that is parallel to a side, a narrow strip: nothing but jumps."""
     functions = {

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from sweeps import sweep
 from workspace.spare_arms import KINDS, drawn_arm, sampled
 from workspace.spare_sizes import FAMILIES, spare_arm
 
@@ -56,7 +57,7 @@ def test_points_behind_a_barrier(robot, point):
 
 
 # Seeds of every family; among them those of whose samples searches from near the point alone deny some.
-@pytest.mark.parametrize("seed", [*range(24), 181, 195, 205, 229, 246, 251, 259, 267, 275, 277, 280, 290])
+@pytest.mark.parametrize("seed", sweep([*range(24), 181, 195, 205, 229, 246, 251, 259, 267, 275, 277, 280, 290], 4))
 def test_no_sample_of_a_drawn_arm_is_denied(seed, rng):
     space = space_of(drawn_arm(seed))
     if not space.moving:
@@ -74,7 +75,9 @@ def test_no_sample_of_a_circle_is_denied_that_two_joints_of_one_axis_reach(rng):
     assert reachable(space, p).all()
 
 
-@pytest.mark.parametrize("name", ["scorbot-er4u", "openarm-left", "kr5-arc", "panda", "piper-old", "stanford"])
+@pytest.mark.parametrize(
+    "name", sweep(["scorbot-er4u", "openarm-left", "kr5-arc", "panda", "piper-old", "stanford"], 3)
+)
 def test_no_sample_of_a_library_arm_is_denied(name, rng):
     space = space_of(robokin.load(name))
     for kind in KINDS:
@@ -96,7 +99,7 @@ def brute(space, points, k, count):
     return there
 
 
-@pytest.mark.parametrize(("family", "number"), [("planar 3R", 1), ("PRR", 2), ("waist and 3R", 1)])
+@pytest.mark.parametrize(("family", "number"), sweep([("planar 3R", 1), ("PRR", 2), ("waist and 3R", 1)], 3))
 def test_one_spare_joint_is_decided_by_its_limits(family, number, rng):
     space = space_of(spare_arm(family, number)[0])
     exact = one_spare_of(space)
@@ -132,6 +135,7 @@ def test_a_place_says_whether_it_is_proven(rng):
     assert at_point(space_of(FOLDED), [0.1, 0.1, 0.0], 8).proven is True
 
 
+@pytest.mark.slow
 def test_searches_learn_from_what_they_deny():
     space = space_of(drawn_arm(277))
     region = region_of(space, extent(space))
@@ -141,7 +145,7 @@ def test_searches_learn_from_what_they_deny():
     assert descent_of(space).learned
 
 
-@pytest.mark.parametrize("family", [name for name in FAMILIES if name != "planar 4R"])
+@pytest.mark.parametrize("family", sweep([name for name in FAMILIES if name != "planar 4R"], 5))
 def test_bounds_hold_and_more_points_do_not_break_them(family):
     robot, size = spare_arm(family, 3)
     space = space_of(robot)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
@@ -127,7 +128,7 @@ def test_reach_is_counted_from_the_base_wherever_that_is(rng):
     assert np.allclose(moved.low, base[:3, 3] - half, rtol=0, atol=EXACT * 4)
 
 
-@pytest.mark.parametrize("name", LIBRARY)
+@pytest.mark.parametrize("name", sweep(LIBRARY, 4))
 def test_no_sample_goes_beyond(name):
     space = space_of(robokin.load(name))
     found = extent(space)
@@ -263,7 +264,7 @@ def any_arm(number):
     return Robot("any", tuple(rows), tool=translation_transform(scale * rng.uniform(-0.5, 0.5, 3)))
 
 
-@pytest.mark.parametrize("number", range(12))
+@pytest.mark.parametrize("number", sweep(range(12), 4))
 def test_a_dense_search_finds_nothing_beyond(number):
     """Coordinate descent and Newton's method from 300 configurations, many of them at limits, for each question."""
     space = space_of(any_arm(number))

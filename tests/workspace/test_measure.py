@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
@@ -152,7 +153,7 @@ def test_the_same_on_any_number_of_cores_and_another_for_another_seed():
 LINKS = [(1.0, 0.6, 0.35), (1.0, 0.3, 0.2), (0.5, 0.4, 0.3, 0.2), (2.0, 0.4, 0.3, 0.2), (0.05,) * 20, (0.1, 0.05) * 12]
 
 
-@pytest.mark.parametrize("lengths", LINKS)
+@pytest.mark.parametrize("lengths", sweep([(lengths,) for lengths in LINKS], 3))
 def test_redundant_planar_arms_reach_an_annulus(lengths):
     most, least = sum(lengths), max(0.0, 2.0 * max(lengths) - sum(lengths))
     # Searches with many joints cost more, so that fewer are made.
@@ -160,6 +161,7 @@ def test_redundant_planar_arms_reach_an_annulus(lengths):
     within(size_of(planar(*lengths), samples), np.pi * (most**2 - least**2), part)
 
 
+@pytest.mark.slow
 def test_many_joints_reach_a_ball():
     """Eighteen unlimited joints of which hardly any sample is stretched: that is no reason to call the rim empty."""
     found = robokin.analyse_workspace(robokin.load("human-body"), samples=1 << 16)
@@ -168,6 +170,7 @@ def test_many_joints_reach_a_ball():
     assert abs(size.value - 4.0 / 3.0 * np.pi * reach**3) <= size.error < 0.06 * size.value
 
 
+@pytest.mark.slow
 def test_a_redundant_arm_with_a_hand_reaches_a_shell():
     # Three links that move in a plane through the first axis, and a hand that leaves it.
     def robot(first):

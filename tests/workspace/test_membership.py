@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.kernel.geometric_jacobian import motion
@@ -47,7 +48,9 @@ def test_every_sampled_position_is_reachable(name, rng):
 
 
 # One in ten thousand may be missed, and is on the boundary; these seeds have none.
-@pytest.mark.parametrize("name", ["puma560", "ur5e", "stanford", "thumb", "panda", "irb120", "hc10", "human-arm"])
+@pytest.mark.parametrize(
+    "name", sweep(["puma560", "ur5e", "stanford", "thumb", "panda", "irb120", "hc10", "human-arm"], 4)
+)
 def test_every_sampled_position_of_arms_with_more_joints_is_reachable(name, rng):
     space = space_of(robokin.load(name))
     q = np.concatenate([sampled(space, rng, 1000), sampled(space, rng, 1000, beyond=0.2)], axis=1)
@@ -75,7 +78,9 @@ def test_nothing_beyond_the_greatest_distance_or_out_of_the_plane_is_reachable(r
     assert not reachable(space_of(robokin.load("planar2r")), [[0.5, 0.5, 1e-3]]).any()
 
 
-@pytest.mark.parametrize("lengths", [(1.0, 0.6), (1.0, 0.6, 0.35), (1.0, 0.3, 0.2), (2.0, 0.5, 0.4, 0.3)])
+@pytest.mark.parametrize(
+    "lengths", sweep([((1.0, 0.6),), ((1.0, 0.6, 0.35),), ((1.0, 0.3, 0.2),), ((2.0, 0.5, 0.4, 0.3),)], 4)
+)
 def test_the_annulus_s_edges(lengths, rng):
     space = space_of(planar(*lengths))
     most, least = sum(lengths), max(0.0, 2.0 * max(lengths) - sum(lengths))
@@ -89,6 +94,7 @@ def test_the_annulus_s_edges(lengths, rng):
             assert not reachable(space, around(np.full(200, least - depth), rng)).any()
 
 
+@pytest.mark.slow
 def test_limits_of_a_redundant_planar_arm_against_all_its_configurations():
     limits = [(-1.0, 1.0), (0.2, 1.5), (-0.5, 1.0), (-0.3, 0.3)]
     space = space_of(planar(1.0, 0.6, 0.4, 0.3, limits=limits))

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
@@ -138,7 +139,7 @@ def test_early_outs_change_no_answer() -> None:
     assert np.array_equal(fractions(space, grid, points, cores=2), np.mean(flags, axis=1))
 
 
-@pytest.mark.parametrize(("lengths", "area"), [((1.0, 0.6, 0.35), 3.1416), ((1.0, 0.3, 0.2), 1.2566)])
+@pytest.mark.parametrize(("lengths", "area"), sweep([((1.0, 0.6, 0.35), 3.1416), ((1.0, 0.3, 0.2), 1.2566)], 2))
 def test_planar_three_links(lengths: tuple[float, float, float], area: float) -> None:
     assert every_area(*lengths) == pytest.approx(area, rel=1e-4)
     reach = np.pi * sum(lengths) ** 2
@@ -152,6 +153,7 @@ def test_planar_three_links(lengths: tuple[float, float, float], area: float) ->
         assert area / reach < found.mean < 1.0
 
 
+@pytest.mark.slow
 def test_the_usual_bound_is_half_a_per_cent() -> None:
     found = dexterity_of(planar(1.0, 0.6, 0.35), 11.9381, 131072, cores=None)
     assert abs(found.every.value - np.pi) <= found.every.error <= 0.005 * np.pi
@@ -170,6 +172,7 @@ def test_puma_tool_tip() -> None:
     assert len(found.points) == len(found.fraction)
 
 
+@pytest.mark.slow
 def test_the_bound_of_sixteen_times_the_samples() -> None:
     found = dexterity_of(planar(1.0, 0.6, 0.35), 11.9381, 8 * 131072, cores=None)
     assert abs(found.every.value - np.pi) <= found.every.error <= 0.001 * np.pi
@@ -219,6 +222,7 @@ def test_a_scara_has_every_turn_wherever_it_reaches() -> None:
     assert found.every.value <= found.some.value
 
 
+@pytest.mark.slow
 def test_moving_the_base_and_scaling() -> None:
     robot = planar(1.0, 0.6, 0.35)
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
@@ -230,6 +234,7 @@ def test_moving_the_base_and_scaling() -> None:
     assert large.mean == pytest.approx(here.mean)
 
 
+@pytest.mark.slow
 def test_one_answer_on_any_number_of_cores() -> None:
     one, two = (dexterity_of(planar(1.0, 0.6, 0.35), 11.9381, 1024, cores=cores) for cores in (1, 2))
     assert one.every == two.every
@@ -250,6 +255,7 @@ def space(name: str) -> Space:
     return space_of(robokin.load(name))
 
 
+@pytest.mark.slow
 def test_what_is_known_of_a_place() -> None:
     place = at_point(space("planar2r"), [1.0, 0.3, 0.0])
     assert place.reachable

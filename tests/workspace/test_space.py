@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
@@ -124,7 +125,7 @@ def test_a_space_travels_between_processes():
     assert np.array_equal(again.low, space.low)
 
 
-@pytest.mark.parametrize("name", ["puma560", "stanford", "planar3r", "ur5e", "viperx300s"])
+@pytest.mark.parametrize("name", sweep(["puma560", "stanford", "planar3r", "ur5e", "viperx300s"], 3))
 def test_a_joint_that_its_limits_hold_is_no_joint(name):
     """The same set as that of the robot with a fixed row there, which has the same poses."""
     robot = robokin.load(name)

@@ -36,10 +36,11 @@ def command(
         robokin check jacobian planar2r --q 0,90 --expect "$(cat jacobian.txt)"
         robokin check jacobian planar2r --q 0,90 --frame tool --expect "$J"
     """
-    from robokin.cli.arguments import joint_factors, parse_configuration
+    from robokin.formats.vector_expressions import parse_configuration
     from robokin.grading.answers.typed_answers import jacobian_answer
     from robokin.grading.jacobian_marks import JacobianCheck
     from robokin.grading.marking import AnswerTask, GivenValue, marked
+    from robokin.model.joint_units import joint_factors
 
     for name, value in (("--q", q), ("--expect", expect)):
         if value is None:

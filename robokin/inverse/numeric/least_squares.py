@@ -71,7 +71,7 @@ def _step(x: Array, e: Array, J: Array, low: Array, high: Array, long: Flags) ->
     M = np.swapaxes(J, 1, 2) @ J
     trust = np.minimum(DAMPING * squared, 1.0)
     damping = trust[:, None] + FLOOR * np.where(held, 1.0, np.diagonal(M, axis1=1, axis2=2))
-    M += damping[:, :, None] * np.eye(J.shape[2])
+    M.reshape(len(M), -1)[:, :: J.shape[2] + 1] += damping  # its diagonal
     side = np.where(held, 0.0, gradient)[:, :, None]
     dx = np.asarray(np.linalg.solve(M, side)[:, :, 0], dtype=np.float64)
     if long.any():
