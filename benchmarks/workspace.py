@@ -16,7 +16,7 @@ import numpy as np
 
 import robokin
 from benchmarks.machine import best_of, line
-from robokin.jobs.ordered_map import in_order, usable_cores
+from robokin.jobs.ordered_map import ordered_map, usable_cores
 from robokin.model import JointType, Robot
 from robokin.workspace.attitudes import attitudes, group_of
 from robokin.workspace.extremes import extent
@@ -75,7 +75,7 @@ def _positions(cores: int) -> None:
         for used in sorted({1, cores}):
             work = partial(farthest, space)
             taken = best_of(
-                lambda work=work, used=used, count=count: list(in_order(work, range(0, count, TASK), used)), 3
+                lambda work=work, used=used, count=count: list(ordered_map(work, range(0, count, TASK), used)), 3
             )
             wanted = f"limit {POSITIONS / 1e6:.0f} on two cores" if name == "puma560" and used > 1 else ""
             line(f"{name}, million positions a second, {used} cores", f"{count / taken / 1e6:.1f}", wanted)

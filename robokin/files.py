@@ -9,12 +9,18 @@ from __future__ import annotations
 
 import contextlib
 import os
+import select
+import signal
+import stat
 import sys
+import threading
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from robokin.errors import InputError, shown
+from robokin.unfinished_work import in_order
 
 STDIN = "standard input"
 """What messages call it."""
@@ -56,10 +62,43 @@ def open_path(path: str, expected: str) -> Iterator[IO[bytes]]:
 
 def read_up_to(stream: IO[bytes], name: str, most: int, expected: str) -> bytes:
     """What a stream holds, or its first `most` + 1 bytes where it holds more. Raises InputError."""
+    parts, left = [], most + 1
     try:
-        return stream.read(most + 1)
+        while left:
+            wait_for(stream)
+            if not (part := stream.read1(left)):  # type: ignore[attr-defined]
+                break
+            parts.append(part)
+            left -= len(part)
     except OSError as error:
         raise InputError(f"{name}: {unreadable(error)}, expected {expected}") from None
+    return b"".join(parts)
+
+
+def wait_for(stream: Any) -> None:
+    """Wait for the next bytes of a stream of which none are in its buffer, or for its end, or for a signal.
+
+    Python runs the handler of a signal between two of its steps: of one that comes just before the stream is read it
+    would know when the read is over, which on a pipe may be never. So what is waited for is either.
+    """
+    with contextlib.suppress(OSError, ValueError, AttributeError):  # what is no file has no number
+        number = stream.fileno()
+        if in_order.heeded and not stat.S_ISREG(os.fstat(number).st_mode) and (woken := _woken()) is not None:
+            while number not in select.select([number, woken], [], [])[0]:
+                with contextlib.suppress(BlockingIOError):
+                    os.read(woken, 1 << 10)
+
+
+@cache
+def _woken() -> int | None:
+    """The number of what can be read when a signal has come; None where there is no such thing."""
+    if os.name != "posix" or threading.current_thread() is not threading.main_thread():
+        return None
+    here, there = os.pipe()
+    os.set_blocking(here, False)
+    os.set_blocking(there, False)
+    signal.set_wakeup_fd(there, warn_on_full_buffer=False)
+    return here
 
 
 def _require_standard_input(expected: str) -> None:

@@ -18,6 +18,9 @@ class in_order:  # noqa: N801 - read as `with in_order():`
     depth = 0
     """How many of these there are around what is done now."""
 
+    heeded = False
+    """Whether this process is a program that heeds requests to end."""
+
     def __enter__(self) -> None:
         """Begin."""
         in_order.depth += 1

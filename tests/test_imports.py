@@ -14,7 +14,7 @@ import robokin
 
 PACKAGE = Path(robokin.__file__).parent
 ORDER = [
-    "errors", "arrays", "expected", "files", "unfinished_work", "units", "number_text", "brief", "spatial", "model",
+    "errors", "arrays", "expected", "unfinished_work", "files", "units", "number_text", "brief", "spatial", "model",
     "kernel", "jobs", "assembly", "kinematics", "formats", "tables", "inverse", "workspace", "mobility", "derivation",
     "grading", "pictures", "records", "reports", "drawings", "symbol_matrices", "documents", "notebook", "cli",
 ]  # fmt: skip
@@ -164,3 +164,16 @@ def test_the_public_names_are_all_there():
         assert getattr(robokin, name) is not None
     with pytest.raises(AttributeError, match="no attribute 'forward'"):
         robokin.forward  # noqa: B018 - that it raises is the point
+
+
+LONGEST_FUNCTION = 60
+"""Lines: a screen. The functions of commands are lists of options."""
+
+
+@pytest.mark.parametrize("path", modules(), ids=str)
+def test_a_function_fits_a_screen(path):
+    if path.parts[:2] == ("cli", "commands"):
+        return
+    for node in nodes(path):
+        if isinstance(node, ast.FunctionDef):
+            assert node.end_lineno - node.lineno < LONGEST_FUNCTION, f"{path}: {node.name}"

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
+from robokin.cli.cores import CoresOption, whole_cores
 from robokin.cli.option_groups import DescriptionOptions, OptionGroup, OutputOptions
 from robokin.cli.options import SetOption, choose, option
 from robokin.cli.statuses import DONE, NO
 from robokin.errors import InputError, shown
 from robokin.grading.feedback import ANSWER, LEVELS, PART
-from robokin.grading.guarded import BUDGET
+from robokin.jobs.guarded import BUDGET
 
 if TYPE_CHECKING:
     from robokin.grading.mark_items import Item, Report
@@ -139,6 +140,7 @@ class RuleOptions(OptionGroup):
         str | None,
         option("--partial", "SCORE", "The least score of an answer with a known mistake, such as another unit."),
     ] = None
+    cores: CoresOption = None
 
 
 # Options stand in the help in the order of the groups from the last to the first, then a class's own.
@@ -191,6 +193,7 @@ class MarkOptions(DescriptionOptions, DeliveryOptions, RuleOptions):
 
     def __init__(self, **typed: Any) -> None:
         super().__init__(**typed)
+        self.most_cores = whole_cores(self.cores)
         self.seconds, self.least = plain_number(self.budget, "--budget"), plain_number(self.partial, "--partial")
         if self.seconds is not None and not LEAST_BUDGET <= self.seconds <= GREATEST_BUDGET:
             expected = f"expected seconds for each answer, {LEAST_BUDGET:g} to {GREATEST_BUDGET:g}"
@@ -203,7 +206,7 @@ class MarkOptions(DescriptionOptions, DeliveryOptions, RuleOptions):
         """What holds for all marks."""
         from robokin.grading.marking import Rules
 
-        return Rules(BUDGET if self.seconds is None else self.seconds, self.least)
+        return Rules(BUDGET if self.seconds is None else self.seconds, self.least, self.most_cores)
 
     def subject(
         self, kind: type[Kind], name: str, allowed: TableToleranceOptions, *, table: bool = False, **more: Any

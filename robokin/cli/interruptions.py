@@ -32,6 +32,7 @@ def heed() -> None:
     for number in _numbers():
         if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
             signal.signal(number, _end)
+    in_order.heeded = True
     sys.unraisablehook = _lost
 
 

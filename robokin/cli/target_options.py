@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, get_type_hints
+from typing import Annotated
 
 from robokin.cli.option_groups import OptionGroup
 from robokin.cli.options import option
@@ -30,7 +30,7 @@ class TargetOptions(OptionGroup):
     @property
     def texts(self) -> dict[str, str | None]:
         """What was typed, by the options' names, as `parse_target` reads it."""
-        return {f"--{name}": getattr(self, name) for name in get_type_hints(type(self))}
+        return {f"--{name}": getattr(self, name) for name in type(self).__annotations__}
 
     @property
     def given(self) -> list[str]:

@@ -12,10 +12,11 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.grading.feedback import Words, alike, joined
-from robokin.grading.guarded import BUDGET, Overrun, guarded
 from robokin.grading.mark_items import NOT_DECIDED, Item, Report
 from robokin.grading.mistakes import Mistake
 from robokin.grading.tolerance import Tolerance
+from robokin.jobs.guarded import BUDGET, Overrun, guarded
+from robokin.jobs.ordered_map import usable_cores
 from robokin.model import Robot
 from robokin.model.joint_units import in_units, joint_factors
 from robokin.unfinished_work import in_order
@@ -28,6 +29,10 @@ REPEATED = "the same as an answer before, so it does not count"
 
 DIGITS = 9
 """Digits of joint values by which two questions are told apart."""
+
+
+FEW = 16
+"""Answers that are worth a core: to start a process takes as long as to mark one to ten of them."""
 
 
 class NoAnswerError(Exception):
@@ -125,14 +130,15 @@ class Subject:
 
 @dataclass(frozen=True)
 class Rules:
-    """What holds for all marks: `budget`, seconds of processor time for each answer, and `partial`.
+    """What holds for all marks: `budget`, seconds of processor time for each answer, `partial` and `cores`.
 
-    partial: the least score of an answer with a known mistake, or None. Without a budget (None) answers are marked in
-    this process, each however long it takes.
+    partial: the least score of an answer with a known mistake, or None. cores: how many work on the answers, None for
+    all. Without a budget (None) answers are marked in this process, each however long it takes.
     """
 
     budget: float | None = BUDGET
     partial: float | None = None
+    cores: int | None = None
 
     def scored(self, item: Item) -> Item:
         """The item with the score that `partial` leaves an answer with a known mistake."""
@@ -151,7 +157,8 @@ def marked(subject: Subject, tasks: Sequence[AnswerTask], rules: Rules) -> Itera
             yield from map(rules.scored, subject.mark(task))
         return
     # Asked to end, the program first ends the process that works on the answers.
-    with in_order(), contextlib.closing(guarded(subject.mark, tasks, rules.budget)) as outcomes:
+    cores = min(rules.cores or usable_cores(), max(len(tasks) // FEW, 1))
+    with in_order(), contextlib.closing(guarded(subject.mark, tasks, rules.budget, cores)) as outcomes:
         for task, outcome in zip(tasks, outcomes, strict=True):
             if isinstance(outcome, Overrun):
                 yield task.item(NOT_DECIDED, 0.0, undecided(outcome.why), more=dict(subject.unsaid))

@@ -18,6 +18,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis, General
@@ -32,6 +33,7 @@ from robokin.inverse.elimination.skew import Skew
 from robokin.inverse.elimination.splits import REAL, count_solutions
 from robokin.inverse.elimination.starts_close_by import CloseBy
 from robokin.inverse.numeric.least_squares import descend
+from robokin.inverse.self_motion.members import SelfMotion
 from robokin.inverse.self_motion.more_motions import listed_with_more
 from robokin.inverse.verify import CLOSES, Found, distinct, merged
 from robokin.kernel.chain import Chain
@@ -67,13 +69,52 @@ def look_again(
     rest: (window,) where a joint that is free is put; limits: (window, 2); near: (window,) the wish for self-motions.
     """
     assert analysis.six is not None
-    other = _others_of(analysis)
-    basis = np.zeros(len(T), dtype=np.int8)
-    words: dict[int, str] = {}
-    # How many solutions there are, where all N complex ones were told apart.
-    expected = np.full(len(T), -1)
-    # Whether paths ended in singular solutions, and all did.
-    loose = np.zeros(len(T), dtype=bool)
+    own, other, few = analysis.own, _others_of(analysis), few_solutions(analysis, T)
+    sought = _sought(analysis, other, T, near, few)
+    index = np.concatenate([part[0] for part in sought.parts])
+    q = np.concatenate([part[1] for part in sought.parts])
+    found = merged(found, closing_at_last(own, T, index, q, analysis.size))
+    closing = np.bincount(found.index, minlength=len(T))
+    found = distinct(found, own.revolute, analysis.size)
+    found, motions, unclear, beside = listed_with_more(
+        own, analysis.solver, T, found, analysis.size, limits, rest, near, np.flatnonzero(sought.loose)
+    )
+    found = distinct(found, own.revolute, analysis.size)
+    real = np.bincount(found.index, minlength=len(T))
+    clear = real + beside == sought.expected
+    sliding = not own.revolute.all()
+    _withdraw(sought, [i for i in unclear.tolist() if i in motions or not clear[i]], motions, few | (not sliding))
+    for i in np.flatnonzero(sought.basis == COUNTED) if other.skews else ():
+        number = other.skews[0].number
+        sought.words[int(i)] = (
+            f"{number} of {number} complex solutions found of the arm with skew axes added, "
+            f"{real[i]} real with these standing still"
+        )
+    claims = Claims(sought.basis, analysis.number, real, sought.words, motions)
+    late = np.maximum(real - closing, 0)
+    claims.candidates, claims.duplicates = np.bincount(index, minlength=len(T)) + late, closing + late - real
+    return found, claims
+
+
+class _Sought(NamedTuple):
+    """Candidates for some targets, and what they prove.
+
+    parts: pairs of targets (s,) and values (s, window); basis: (m,) what is proven of each target; words: of some, why;
+    expected: (m,) how many solutions there are, where all N complex ones were told apart, else -1; loose: (m,) whether
+    paths ended in singular solutions, and all did.
+    """
+
+    parts: list[tuple[Index, Array]]
+    basis: NDArray[np.int8]
+    words: dict[int, str]
+    expected: Index
+    loose: Flags
+
+
+def _sought(analysis: Analysis, other: _Others, T: Array, near: Array | None, few: Flags) -> _Sought:
+    """Solutions of targets sought next door, by skew axes, along paths and in other ways, until all are counted."""
+    basis, words = np.zeros(len(T), dtype=np.int8), dict[int, str]()
+    expected, loose = np.full(len(T), -1), np.zeros(len(T), dtype=bool)
     index, q, whole = next_door(analysis, T)
     parts = [(index, q)]
     basis[whole] = COUNTED
@@ -84,7 +125,6 @@ def look_again(
         parts.append((index, q))
         basis[whole], expected[whole] = COUNTED, standing[whole]
     open_ = np.flatnonzero(basis == NOTHING)
-    few = few_solutions(analysis, T)
     if len(open_):
         ends, closed, words, expected[open_], loose[open_] = followed(other, T[open_], few[open_], analysis.own.n)
         still = (
@@ -97,39 +137,24 @@ def look_again(
         if len(open_):
             index, q = other_ways(analysis, T[open_])
             parts.append((open_[index], q))
-    index = np.concatenate([part[0] for part in parts])
-    q = np.concatenate([part[1] for part in parts])
-    found = merged(found, closing_at_last(analysis.own, T, index, q, analysis.size))
-    closing = np.bincount(found.index, minlength=len(T))
-    found = distinct(found, analysis.own.revolute, analysis.size)
-    found, motions, unclear, beside = listed_with_more(
-        analysis.own, analysis.solver, T, found, analysis.size, limits, rest, near, np.flatnonzero(loose)
-    )
-    found = distinct(found, analysis.own.revolute, analysis.size)
-    real = np.bincount(found.index, minlength=len(T))
-    for i in unclear.tolist():
-        if real[i] + beside[i] == expected[i] and i not in motions:
-            continue
-        basis[i], words[i] = (
-            NOTHING,
-            "next to a singular pose: other solutions may be too near to one listed to be told apart",
-        )
+    return _Sought(parts, basis, words, expected, loose)
+
+
+def _withdraw(sought: _Sought, unclear: list[int], motions: dict[int, list[SelfMotion]], few: Flags) -> None:
+    """Take back what is proven of targets of which solutions may not have been told apart, or sets not all followed.
+
+    few: (m,) whether there cannot be more self-motions than those that paths lead to.
+    """
+    for i in unclear:
+        sought.basis[i] = NOTHING
+        sought.words[i] = "next to a singular pose: other solutions may be too near to one listed to be told apart"
     for i, sets in motions.items():
         if any(motion.curve.sheets for motion in sets):
-            basis[i], words[i] = NOTHING, "a self-motion of more than one dimension: only curves on it were followed"
-        elif not analysis.own.revolute.all() and not few[i]:
+            sought.basis[i] = NOTHING
+            sought.words[i] = "a self-motion of more than one dimension: only curves on it were followed"
+        elif not few[i]:
             # Of slides a self-motion may have pieces that no path and no neighbouring pose leads to.
-            basis[i], words[i] = NOTHING, "self-motions with sliding joints: there may be more of them"
-    for i in np.flatnonzero(basis == COUNTED) if other.skews else ():
-        number = other.skews[0].number
-        words[int(i)] = (
-            f"{number} of {number} complex solutions found of the arm with skew axes added, "
-            f"{real[i]} real with these standing still"
-        )
-    claims = Claims(basis, analysis.number, real, words, motions)
-    late = np.maximum(real - closing, 0)
-    claims.candidates, claims.duplicates = np.bincount(index, minlength=len(T)) + late, closing + late - real
-    return found, claims
+            sought.basis[i], sought.words[i] = NOTHING, "self-motions with sliding joints: there may be more of them"
 
 
 class _Others(NamedTuple):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +19,7 @@ from robokin.inverse.single_answer import FAR, result_of
 from robokin.inverse.solutions import BatchResult, Question, Result
 from robokin.inverse.solve_blocks import BLOCK
 from robokin.inverse.target_block import Method, Request, TargetBlock
+from robokin.jobs.ordered_map import MOST_CORES, ordered_map
 from robokin.model import Robot, expect_robot
 from robokin.spatial import nearest_rotation, rotation_error, transform
 from robokin.spatial.rotations import DIGITS_LOST
@@ -38,6 +40,7 @@ def solve_ik(
     seed: int = 0,
     turns: bool = False,
     hold: Mapping[int, float] | None = None,
+    cores: int | None = 1,
 ) -> Result | BatchResult:
     """Every configuration that brings the tool to T.
 
@@ -49,7 +52,8 @@ def solve_ik(
     many solutions well spread ones are listed, each the farthest from those before. `task` is the whole pose,
     the position with the z axis (`approach`), or the position alone. `most` cuts the list. `turns` also lists the
     ±360° equivalents of each solution within the limits. `hold` fixes joints (from 0) at values [rad | m]: the rest
-    is solved as the arm that it then is, and `complete` is said of that.
+    is solved as the arm that it then is, and `complete` is said of that. `cores` share a batch of more than `BLOCK`
+    targets, all usable ones for None; the answers are the same.
     Returns a Result for one pose, a BatchResult for several. Raises InputError for what is no pose.
     Source: D. L. Pieper, The kinematics of manipulators under computer control, 1968 (three axes through a point, three
     parallel ones, three slides); M. Raghavan and B. Roth, Inverse kinematics of the general 6R manipulator and related
@@ -59,7 +63,7 @@ def solve_ik(
     poses = target_poses(T)
     alone = poses.ndim == 2
     targets = poses.reshape(-1, 4, 4)
-    batch = solve_many(robot, targets, limits, near, method, task, most, seed, turns, hold, alone)
+    batch = solve_many(robot, targets, limits, near, method, task, most, seed, turns, hold, alone, cores)
     batch = replace(batch, question=Question(robot, targets, task, bool(limits), dict(hold or {})))
     return batch[0] if alone else batch
 
@@ -76,6 +80,7 @@ def solve_many(
     turns: bool = False,
     hold: Mapping[int, float] | None = None,
     motions: bool = False,
+    cores: int | None = 1,
 ) -> BatchResult:
     """`solve_ik` for poses T: (m, 4, 4), whatever their number.
 
@@ -89,13 +94,15 @@ def solve_many(
     limits, turns = expect_flag(limits, "limits"), expect_flag(turns, "turns")
     most = None if most is None else expect_whole(most, "most", 1)
     seed = expect_whole(seed, "seed", 0)
+    cores = None if cores is None else expect_whole(cores, "cores", 1, MOST_CORES)
     if hold is not None:
         expect_kind(hold, Mapping, "hold", "a mapping of joints (from 0) to values, such as {2: 0.35}")
     if hold:
         arm = held_arm(robot, hold)
         if limits:
             check_held_limits(robot, arm)
-        batch = solve_many(arm.part, T, limits, own_near(arm, near), method, task, most, seed, turns, None, motions)
+        own = own_near(arm, near)
+        batch = solve_many(arm.part, T, limits, own, method, task, most, seed, turns, None, motions, cores)
         return with_held_joints(robot, arm, batch)
     if turns:
         check_turns(robot, limits)
@@ -103,7 +110,10 @@ def solve_many(
     request = asked = replace(_request(robot, limits, near, method, task, most, seed), motions=motions)
     if turns and not (asked.analysis.redundancy or asked.analysis.solver is None):
         request = replace(asked, most=None)  # what is cut is the list with the full turns in it
-    answers = [TargetBlock(request, poses[start : start + BLOCK]) for start in range(0, len(poses), BLOCK)]
+    blocks = [poses[start : start + BLOCK] for start in range(0, len(poses), BLOCK)]
+    answers = list(ordered_map(partial(TargetBlock, request), blocks, cores))
+    for answer in answers:
+        answer.request = request
     batch = _batch(request, answers)
     if turns:
         return with_full_turns(robot, batch, poses, task, asked.near, asked.analysis.size, most)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -138,6 +138,10 @@ class TargetBlock:
         whole = len(self.found) == len(found)
         self.count = self.within if whole else np.bincount(self.found.index, minlength=len(T))
         self.cut = self.within > self.count
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but what was asked: the process that asked another one has it, and sets it again."""
+        return {name: value for name, value in self.__dict__.items() if name != "request"}
 
     def _each_once(self, targets: Index, more: Found) -> Found:
         """What a search found for some targets (k,), by these, with each multiple root and each self-motion once."""

@@ -1,41 +1,48 @@
-"""A function of many tasks on all cores, its results in the tasks' order whatever the number of cores.
+"""A function of many blocks on several cores, its results in the blocks' order whatever the number of cores.
 
-Worker processes are forked, so that the function may be anything and starts with all that has been prepared; where
-there is no safe fork (Windows, macOS) threads do the work, for numpy lets go of the interpreter's lock.
+The workers are those of `concurrent.futures`. Processes are forked where that is safe, so that the function may be
+anything and starts with all that has been prepared. Elsewhere (Windows, macOS) threads do the work, for numpy lets go
+of the interpreter's lock, or fresh processes for a program that may be started again: the function must then pickle,
+and a script needs its `if __name__ == "__main__":`.
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
-import pickle
 import signal
 import sys
+import threading
 import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sized
-from itertools import islice
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import partial
+from itertools import chain, islice
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from robokin.errors import InputError, RobokinError
 from robokin.jobs.stages import counted
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future, ProcessPoolExecutor
     from multiprocessing.connection import Connection
-    from multiprocessing.process import BaseProcess
 
-Task = TypeVar("Task")
+Block = TypeVar("Block")
 Result = TypeVar("Result")
+Workers = Literal["auto", "processes", "threads"]
+
+MOST_CORES = 1024
+"""Cores at most: more are a slip."""
 
 AHEAD = 4
-"""Tasks for each core that are done, or being done, before the oldest result is taken: it bounds the memory."""
+"""Blocks for each core that are done, or being done, before the oldest result is taken: it bounds the memory."""
 
 GRACE = 1.0
-"""Seconds that a worker has to end by itself before it is told to."""
+"""Seconds that a worker between two blocks has to end by itself before it is ended."""
 
 
 class WorkerError(RobokinError):
-    """A worker process came to an end in the middle of its task."""
+    """A worker process came to an end in the middle of its block."""
 
 
 def usable_cores() -> int:
@@ -45,115 +52,123 @@ def usable_cores() -> int:
     return os.cpu_count() or 1
 
 
-def in_order(function: Callable[[Task], Result], tasks: Iterable[Task], cores: int | None = None) -> Iterator[Result]:
-    """The results of function(task), in the tasks' order; tasks are drawn as they are needed.
+def ordered_map(
+    function: Callable[[Block], Result],
+    blocks: Iterable[Block],
+    cores: int | None = None,
+    window: int | None = None,
+    workers: Workers = "auto",
+) -> Iterator[Result]:
+    """The results of function(block), in the blocks' order; blocks are drawn as they are needed.
 
-    cores: how many to use, all usable ones for None. With one core, or fewer than two tasks, and inside a worker,
-    all is done in this process. Tasks and results travel between processes and so must pickle. An error of the
-    function is raised here in its task's turn. Raises InputError for less than one core, WorkerError when a
-    worker was ended from outside (as a system short of memory does).
+    cores: how many to use, all usable ones for None. window: blocks under way or done before the oldest result is
+    taken, `AHEAD` for each core for None. workers: "processes" are forked or else fresh ones, "threads" share this
+    process, "auto" forks or else takes threads. With one core, or fewer than two blocks, and inside a worker, all is
+    done here. Blocks and results travel between processes and so must pickle. An error of the function, or of what the
+    blocks are drawn from, is raised here in its block's turn. Raises InputError for less than one core, WorkerError
+    when a worker was ended from outside (as a system short of memory does).
     """
     if cores is not None and cores < 1:
         raise InputError(f"found {cores} cores, expected at least 1")
-    total = len(tasks) if isinstance(tasks, Sized) else None
-    waiting = iter(tasks)
-    first = list(islice(waiting, cores or usable_cores()))
-    if len(first) < 2 or _is_worker():
-        return counted(map(function, _chained(first, waiting)), total)
-    return counted((_forked if _can_fork() else _threaded)(function, _chained(first, waiting), len(first)), total)
+    total = len(blocks) if isinstance(blocks, Sized) else None
+    waiting = iter(blocks)
+    first: list[Block] = []
+    try:
+        first.extend(islice(waiting, cores or usable_cores()))
+    except Exception as error:
+        waiting = _raising(error)
+    drawn = chain(first, waiting)
+    if len(first) < 2 or _in_worker():
+        return counted(map(function, drawn), total)
+    several = len(first)
+    threads = workers == "threads" or (workers == "auto" and not _can_fork())
+    pool = _thread_pool if threads else _process_pool
+    return counted(_in_turn(partial(pool, function, several), drawn, window or AHEAD * several), total)
 
 
-def _chained(first: list[Task], rest: Iterator[Task]) -> Iterator[Task]:
-    while first:
-        yield first.pop(0)
-    yield from rest
+def _in_turn(pool: Callable[[], Any], blocks: Iterator[Block], window: int) -> Iterator[Any]:
+    """The results of blocks that a pool's workers take, the oldest first, at most `window` of them not yet taken."""
+    from concurrent.futures import BrokenExecutor
+
+    under_way: deque[Future[Any]] = deque()
+    try:
+        with pool() as submit:
+            while True:
+                try:
+                    under_way.append(submit(next(blocks)))
+                except StopIteration:
+                    break
+                except Exception as error:
+                    blocks = _raising(error)
+                    break
+                if len(under_way) >= window:
+                    yield under_way.popleft().result()
+            while under_way:
+                yield under_way.popleft().result()
+            yield from blocks  # there are no more, or what is wrong with the next one is said
+    except BrokenExecutor:
+        sentence = "a worker process was ended from outside, expected more memory or fewer cores"
+        raise WorkerError(sentence) from None
+
+
+def _raising(error: Exception) -> Iterator[Any]:
+    """No blocks but an error."""
+    raise error
+    yield
 
 
 def _can_fork() -> bool:
     return sys.platform.startswith("linux")
 
 
-def _is_worker() -> bool:
-    """Whether this is a worker process, which has a core of its own and no more."""
-    process = sys.modules.get("multiprocessing.process")
-    return process is not None and bool(process.current_process().daemon)
+@contextlib.contextmanager
+def _thread_pool(function: Callable[[Any], Any], cores: int) -> Iterator[Callable[[Any], Future[Any]]]:
+    from concurrent.futures import ThreadPoolExecutor
 
-
-def _threaded(function: Callable[[Task], Result], tasks: Iterator[Task], cores: int) -> Iterator[Result]:
-    from concurrent.futures import Future, ThreadPoolExecutor
-
-    pool = ThreadPoolExecutor(cores)
-    futures: deque[Future[Result]] = deque()
+    pool = ThreadPoolExecutor(cores, initializer=_begin_thread)
     try:
-        for task in tasks:
-            futures.append(pool.submit(function, task))
-            if len(futures) >= AHEAD * cores:
-                yield futures.popleft().result()
-        while futures:
-            yield futures.popleft().result()
+        yield lambda block: pool.submit(function, block)
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _forked(function: Callable[[Task], Result], tasks: Iterator[Task], cores: int) -> Iterator[Result]:
-    from multiprocessing.connection import wait
-
-    workers: dict[Connection[Any, Any], BaseProcess] = {}
-    busy: dict[Any, int] = {}  # which task each worker's connection has
-    done: dict[int, tuple[bool, Any]] = {}
-    drawn = given = 0
-    try:
-        _start(function, cores, workers)
-        idle = list(workers)
-        more = True
-        while True:
-            # A worker gets a task only when it waits for one, so that neither side waits for the other to read.
-            while more and idle and drawn - given < AHEAD * cores:
-                try:
-                    task = next(tasks)
-                except StopIteration:
-                    more = False
-                    break
-                connection = idle.pop()
-                busy[connection] = drawn
-                _send(connection, task)
-                drawn += 1
-            while given in done:
-                good, value = done.pop(given)
-                given += 1
-                if not good:
-                    raise value
-                yield value
-            if given == drawn and not more:
-                return
-            if given == drawn or (more and idle and drawn - given < AHEAD * cores):
-                continue
-            for ready in wait(list(busy)):
-                done[busy.pop(ready)] = _receive(ready)
-                idle.append(ready)  # type: ignore[arg-type]
-    finally:
-        _end(workers)
-
-
-def _start(function: Callable[[Task], Result], cores: int, workers: dict[Connection[Any, Any], BaseProcess]) -> None:
-    """Fork workers, each with a connection."""
+@contextlib.contextmanager
+def _process_pool(function: Callable[[Any], Any], cores: int) -> Iterator[Callable[[Any], Future[Any]]]:
+    """Processes that begin with the function, and end when this block does, whatever they are at."""
+    from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
 
-    context = get_context("fork")
-    for _ in range(cores):
-        ours, theirs = context.Pipe()
-        process = context.Process(target=_work, args=(function, theirs, [*workers, ours]), daemon=True)
-        with warnings.catch_warnings(), _no_interrupt():
-            # Python warns of threads that a fork leaves behind: those of the algebra library, which knows of forks.
-            warnings.simplefilter("ignore", DeprecationWarning)
-            process.start()
+    fork = _can_fork()
+    context: Any = get_context("fork" if fork else "spawn")
+    theirs, ours = context.Pipe(duplex=False)
+    start = (function, theirs, ours if fork else None)
+    pool = ProcessPoolExecutor(cores, context, initializer=_begin_process, initargs=start)
+    try:
+        yield partial(_submitted, pool)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            for _ in range(cores):
+                ours.send_bytes(b"")  # one for each: a message without content is read whole or not at all
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+        ours.close()
         theirs.close()
-        workers[ours] = process
+
+
+def _submitted(pool: ProcessPoolExecutor, block: Any) -> Future[Any]:
+    with warnings.catch_warnings(), no_interrupt():
+        # Python warns of threads that a fork leaves behind: those of the algebra library, which knows of forks.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        return pool.submit(_work, block)
 
 
 @contextlib.contextmanager
-def _no_interrupt() -> Iterator[None]:
-    """Hold back Ctrl-C, so that a worker is not hit by it before it has learned to ignore it."""
+def no_interrupt() -> Iterator[None]:
+    """Hold back Ctrl-C, so that a process is not hit by it before it has learned to ignore it."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -161,57 +176,77 @@ def _no_interrupt() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _work(function: Callable[[Any], Any], connection: Connection[Any, Any], others: list[Connection[Any, Any]]) -> None:
-    """A worker's life: tasks come, results go, until the other side hangs up. It never says a word."""
-    # Ctrl-C reaches every process of a terminal; the one that started the workers ends them.
+def default_signals() -> None:
+    """In a new process: Ctrl-C, which reaches every process of a terminal, is for the one that started it to heed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    for name in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(name, signal.SIG_DFL)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-    for other in others:
+    for name in ("SIGTERM", "SIGHUP", "SIGPROF"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_DFL)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+
+
+class _Here(threading.local):
+    """What a thread is: a worker has a core of its own and no more."""
+
+    worker = False
+    function: Callable[[Any], Any]
+    between: threading.Lock
+    """Held by a worker process but for the time in which it works at a block: it may be handing back a result."""
+
+
+_here = _Here()
+
+
+def _in_worker() -> bool:
+    process = sys.modules.get("multiprocessing.process")
+    return _here.worker or (process is not None and bool(process.current_process().daemon))
+
+
+def _begin_thread() -> None:
+    _here.worker = True
+
+
+def _begin_process(
+    function: Callable[[Any], Any], told: Connection[Any, Any], other: Connection[Any, Any] | None
+) -> None:
+    """A worker process begins. told: from where it hears that it should end; other: its other end, if it is here."""
+    default_signals()
+    if other is not None:
         other.close()
+    _here.worker, _here.function, _here.between = True, function, threading.Lock()
+    _here.between.acquire()
+    threading.Thread(target=_end_when_told, args=(told, _here.between), daemon=True).start()
+
+
+def _end_when_told(told: Connection[Any, Any], between: threading.Lock) -> None:
+    """End this process in the middle of its block when it is told to, or when the one that started it is gone.
+
+    A result that is being handed back is handed back first: the other side would wait for the rest of it.
+    """
     with contextlib.suppress(EOFError, OSError):
-        while True:
-            task = connection.recv()
-            answer: tuple[bool, Any]
-            try:
-                answer = True, function(task)
-            except Exception as error:
-                answer = False, error
-            connection.send_bytes(_packed(answer))
+        told.recv_bytes()
+        between.acquire(timeout=GRACE)
+    os._exit(0)
 
 
-def _packed(answer: tuple[bool, Any]) -> bytes:
+def _work(block: Any) -> Any:
+    """A worker process works at a block."""
+    _here.between.release()
     try:
-        packed = pickle.dumps(answer, pickle.HIGHEST_PROTOCOL)
-        pickle.loads(packed) if not answer[0] else None
-    except Exception as error:  # an error with arguments of its own may pickle badly, and a result not at all
-        cause = error if answer[0] else answer[1]
-        return pickle.dumps((False, RuntimeError(f"{type(cause).__name__}: {cause}")))
-    return packed
+        return _here.function(block)
+    except Exception as error:
+        raise _portable(error) from None
+    finally:
+        _here.between.acquire()
 
 
-def _send(connection: Connection[Any, Any], task: object) -> None:
-    # A worker that is gone is noticed where its answer is read.
-    with contextlib.suppress(BrokenPipeError, ConnectionResetError):
-        connection.send(task)
+def _portable(error: Exception) -> Exception:
+    """The error, or one that says it in words where it does not pickle: it may have arguments of its own."""
+    import pickle
 
-
-def _receive(connection: Any) -> tuple[bool, Any]:
     try:
-        return connection.recv()  # type: ignore[no-any-return]
-    except (EOFError, ConnectionResetError):
-        return False, WorkerError("a worker process was ended from outside, expected more memory or fewer cores")
-
-
-def _end(workers: dict[Connection[Any, Any], BaseProcess]) -> None:
-    """Hang up, which ends workers that wait; end the others, and wait until all are gone."""
-    for connection in workers:
-        connection.close()
-    for process in workers.values():
-        process.terminate()
-    for process in workers.values():
-        process.join(GRACE)
-        if process.is_alive():
-            process.kill()
-            process.join()
+        pickle.loads(pickle.dumps(error))
+    except Exception:
+        return RuntimeError(f"{type(error).__name__}: {error}")
+    return error

@@ -93,8 +93,8 @@ def solved(A: Array, b: Array, pivot: Callable[[Array], Array] | None = None) ->
         column = row / D[k]
         A[k + 1 :, k + 1 :] -= column[:, None] * row
         y[k + 1 :] -= column * y[k]
-        row[:] = column
-    x = y / D
-    for k in range(n - 1, 0, -1):
+    x = y.copy()
+    for k in range(n - 1, -1, -1):
+        x[k] /= D[k]
         x[:k] -= A[:k, k] * x[k]
     return x, D, y

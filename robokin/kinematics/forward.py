@@ -2,29 +2,48 @@
 
 from __future__ import annotations
 
+import math
+from collections import deque
+
+import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
 from robokin.errors import InputError
-from robokin.expected import expect_numbers
+from robokin.expected import expect_numbers, expect_whole
+from robokin.jobs.ordered_map import MOST_CORES, ordered_map
 from robokin.kernel.chain import chain_of
-from robokin.kernel.columns import ChainProgram, Constant
+from robokin.kernel.columns import BLOCK, ChainProgram, Constant
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import frames, pose, run
 from robokin.model import Robot, expect_robot
 from robokin.spatial import exact
 
+SHARE = 8 * BLOCK
+"""Configurations that a thread takes at once: for fewer it is not worth while to start one."""
 
-def forward_kinematics(robot: Robot, q: ArrayLike) -> Array:
+
+def forward_kinematics(robot: Robot, q: ArrayLike, cores: int | None = 1) -> Array:
     """The pose of the tool in the world.
 
-    q: (..., n) joint values in file order [rad | m]. Returns (..., 4, 4) [m].
-    NaN in a row of q gives NaN in its pose. Raises InputError when q has another length than n.
+    q: (..., n) joint values in file order [rad | m]. Returns (..., 4, 4) [m]. cores: threads that share a large batch,
+    all usable cores for None; the poses are the same. NaN in a row of q gives NaN in its pose. Raises InputError when q
+    has another length than n, or for less than one core.
     Source: J. Denavit and R. S. Hartenberg, A kinematic notation for lower-pair mechanisms based on matrices,
     J. Applied Mechanics 22, 1955; modified tables as J. J. Craig, Introduction to Robotics, 1986, has them.
     """
-    q = joint_values(robot, q)
-    return pose(chain_of(robot), q)
+    q, chain = joint_values(robot, q), chain_of(robot)
+    cores = None if cores is None else expect_whole(cores, "cores", 1, MOST_CORES)
+    if cores == 1:
+        return pose(chain, q)
+    rows = q.reshape(math.prod(q.shape[:-1]), robot.n)
+    T = np.empty((len(rows), 4, 4))
+
+    def fill(start: int) -> None:
+        T[start : start + SHARE] = pose(chain, rows[start : start + SHARE])
+
+    deque(ordered_map(fill, range(0, len(rows), SHARE), cores, workers="threads"), maxlen=0)
+    return T.reshape(*q.shape[:-1], 4, 4)
 
 
 def link_frames(robot: Robot, q: ArrayLike) -> Array:

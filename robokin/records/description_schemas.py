@@ -84,7 +84,7 @@ def show() -> Schema:
     return documents("show", "What a description describes.", [], **variants)
 
 
-def _robot(about: dict[str, Schema]) -> Schema:
+def _row() -> Schema:
     limits = maybe(numbers("Least and greatest value [joint].", 2), "where it has none")
     frames = {
         "origin": maybe(matrix("Pose in the frame before, at q = 0"), "in a DH table"),
@@ -96,7 +96,7 @@ def _robot(about: dict[str, Schema]) -> Schema:
         "a": number("The row's a [length]."),
         "alpha": number("The row's alpha [angle]."),
     }
-    row = record(
+    return record(
         "A row of the table.",
         {
             "i": whole("Its number.", 1),
@@ -109,6 +109,9 @@ def _robot(about: dict[str, Schema]) -> Schema:
         },
         frames | cells,
     )
+
+
+def _robot(about: dict[str, Schema]) -> Schema:
     at_zero = record(
         "Where the tool frame stands with every joint at zero.",
         {
@@ -143,7 +146,7 @@ def _robot(about: dict[str, Schema]) -> Schema:
             "base": matrix("From the world to the first frame"),
             "tool": matrix("From the last frame to the end effector"),
             "at_zero": at_zero,
-            "rows": items(row, "The table."),
+            "rows": items(_row(), "The table."),
             "poses": mapping(numbers("Joint values [joint]."), "Named poses."),
         },
     )

@@ -43,11 +43,21 @@ class PoseMaker:
                     number = self.count + int(finite.argmin()) + 1
                     raise InputError(f"configuration {number}: the pose is too far away for a number, expected less")
             yield PoseBlock(self.count + 1, q + 0.0, within, T, frames)
-            if not within.all():
-                if not self.outside:
-                    self.first_outside = self.count + int(within.argmin()) + 1
-                self.outside += len(q) - int(within.sum())
-            self.count += len(q)
+            first = self.count + int(within.argmin()) + 1
+            self.add(len(q), len(q) - int(within.sum()), first)
+
+    def add(self, count: int, outside: int, first_outside: int) -> None:
+        """Count a block of configurations, and those that are outside the limits; the number of the first of these."""
+        if outside and not self.outside:
+            self.first_outside = first_outside
+        self.outside += outside
+        self.count += count
+
+    def from_number(self, first: int) -> PoseMaker:
+        """The same for the configurations behind the first ones."""
+        maker = PoseMaker(self.robot, self.units, self.frames)
+        maker.count = first
+        return maker
 
     def outside_notes(self, q: Array) -> Iterator[str]:
         """A sentence for each joint value of a few configurations (m, n) that is outside its limits."""

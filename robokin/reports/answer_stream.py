@@ -2,58 +2,94 @@
 
 from __future__ import annotations
 
+import io
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
-from typing import IO, Any, Generic, TypeVar
+from typing import IO, Any
 
+from robokin.arrays import Array
+from robokin.tables.carried import Carried
 from robokin.tables.sink import sink
 from robokin.tables.written_rows import json_document, json_line, json_list
 
-Block = TypeVar("Block")
 
-
-class AnswerStream(ABC, Generic[Block]):
-    """Blocks of questions to bytes."""
+class AnswerStream(ABC):
+    """Blocks of questions (m, …) to bytes."""
 
     alone: bool
     """Whether one question was asked, so that JSON is one document and text a page."""
 
-    def write(self, kind: str, blocks: Iterable[Block], stream: IO[bytes]) -> Iterator[bytes]:
+    carried: Carried
+    """What goes through from the input."""
+
+    def write(self, kind: str, blocks: Iterable[Array], stream: IO[bytes]) -> Iterator[bytes]:
         """The answers to blocks in a format, piece by piece; arrays go to the stream themselves."""
         if kind == "npy":
             self.npy(blocks, stream)
             return iter(())
         return {"csv": self.csv, "jsonl": self.jsonl, "json": self.json, "table": self.table}[kind](blocks)
 
-    def send(self, output: str | None, kind: str, blocks: Iterable[Block]) -> None:
-        """Write the answers to a file, or to standard output, as they come."""
+    def send(self, output: str | None, kind: str, blocks: Iterable[Array], cores: int | None = 1) -> None:
+        """Write the answers to a file, or to standard output, as they come; several cores (None: all) share them."""
         with sink(output) as stream:
-            for data in self.write(kind, blocks, stream):
+            here = cores == 1 or kind == "npy"
+            for data in self.write(kind, blocks, stream) if here else self.shared(kind, blocks, cores):
                 stream.write(data)
                 stream.flush()  # whoever waits for an answer gets it before the next question
 
+    def shared(self, kind: str, blocks: Iterable[Array], cores: int | None) -> Iterator[bytes]:
+        """The same bytes but for arrays, made on several cores."""
+        from robokin.reports.shared_blocks import blocks_written
+
+        total = 0
+        for data, rows, found in blocks_written(self.part, kind, blocks, self.carried, cores):
+            total += rows
+            if rows:
+                self.add(rows, found)
+            yield data
+        if not total and kind != "json":
+            yield from self.write(kind, (), io.BytesIO())
+
+    def part(self, kind: str, first: int, block: Array, carried: Carried) -> tuple[bytes, Any]:
+        """The answers to one block whose first question has the number first + 1, and what else is known of them."""
+        own = self.from_number(first, carried)
+        return b"".join(own.write(kind, [block], io.BytesIO())), own.found
+
+    def from_number(self, first: int, carried: Carried) -> AnswerStream:
+        """The same for the questions behind the first ones, under what stands above all answers."""
+        raise NotImplementedError
+
+    @property
+    def found(self) -> Any:
+        """What is known of the answers so far, for `add`."""
+        return None
+
+    def add(self, rows: int, found: Any) -> None:
+        """Count the answers to a block, and what was found, that another core made."""
+        raise NotImplementedError
+
     @abstractmethod
-    def documents(self, blocks: Iterable[Block]) -> Iterator[Iterable[dict[str, Any]]]:
+    def documents(self, blocks: Iterable[Array]) -> Iterator[Iterable[dict[str, Any]]]:
         """The documents of the answers, as many at a time as come at once."""
 
     @abstractmethod
-    def csv(self, blocks: Iterable[Block]) -> Iterator[bytes]:
+    def csv(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """The answers as rows of a CSV."""
 
     @abstractmethod
-    def npy(self, blocks: Iterable[Block], stream: IO[bytes]) -> None:
+    def npy(self, blocks: Iterable[Array], stream: IO[bytes]) -> None:
         """The answers as an array."""
 
     @abstractmethod
-    def table(self, blocks: Iterable[Block]) -> Iterator[bytes]:
+    def table(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """The answers for eyes."""
 
-    def json(self, blocks: Iterable[Block]) -> Iterator[bytes]:
+    def json(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """One document, or a list of them."""
         if not self.alone:
             return json_list(self.documents(blocks))
         return (json_document(document) for documents in self.documents(blocks) for document in documents)
 
-    def jsonl(self, blocks: Iterable[Block]) -> Iterator[bytes]:
+    def jsonl(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """A document a line."""
         return (b"".join(map(json_line, documents)) for documents in self.documents(blocks))

@@ -39,7 +39,7 @@ def taken_by(kind: str, n: int) -> list[str]:
 
 
 @dataclass
-class JacobianReport(AnswerStream[Array]):
+class JacobianReport(AnswerStream):
     """Blocks of configurations (m, n) in the units as bytes.
 
     `alone` tells that one was asked for, `carried` what goes through.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import IO, Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.model import Robot
 from robokin.number_text import show
+from robokin.records.pose_blocks import PoseMaker
 from robokin.records.pose_records import PoseBlock, configuration_records
 from robokin.reports.answer_stream import AnswerStream
 from robokin.tables.carried import Carried, nothing
@@ -28,30 +29,54 @@ def csv_columns(robot: Robot, orientation: str | None) -> list[str]:
 
 
 @dataclass(frozen=True)
-class PoseReport(AnswerStream[PoseBlock]):
-    """Blocks of poses as bytes.
+class PoseReport(AnswerStream):
+    """Poses at blocks of configurations as bytes; `maker` counts those outside the limits.
 
     `orientation` is how to say it, None as usual; `alone` tells that one configuration was asked for, by an option;
     `carried` is what goes through.
     """
 
-    robot: Robot
-    units: Units
+    maker: PoseMaker
     orientation: str | None
     alone: bool
     carried: Carried = field(default_factory=nothing)
+    begun: bool = False
+    """Whether what stands above all answers is written."""
 
-    def documents(self, blocks: Iterable[PoseBlock]) -> Iterator[Iterable[dict[str, Any]]]:
+    @property
+    def robot(self) -> Robot:
+        """The robot that is asked about."""
+        return self.maker.robot
+
+    @property
+    def units(self) -> Units:
+        """The units of what goes in and out."""
+        return self.maker.units
+
+    def from_number(self, first: int, carried: Carried) -> PoseReport:
+        """The same for the configurations behind the first ones."""
+        return replace(self, maker=self.maker.from_number(first), carried=carried, begun=first > 0)
+
+    @property
+    def found(self) -> tuple[int, int]:
+        """How many configurations are outside the limits, and the number of the first one."""
+        return self.maker.outside, self.maker.first_outside
+
+    def add(self, rows: int, found: tuple[int, int]) -> None:
+        """Count configurations that were answered elsewhere, and those among them outside the limits."""
+        self.maker.add(rows, *found)
+
+    def documents(self, blocks: Iterable[Array]) -> Iterator[Iterable[dict[str, Any]]]:
         """The documents of each block."""
         more = [self.orientation] if self.orientation else []
-        for poses in blocks:
+        for poses in self.maker.of(blocks):
             yield map(self.carried.in_front_of, configuration_records(self.robot, self.units, poses, more))
 
-    def csv(self, answers: Iterable[PoseBlock]) -> Iterator[bytes]:
+    def csv(self, answers: Iterable[Array]) -> Iterator[bytes]:
         """A row a configuration."""
         columns = csv_columns(self.robot, self.orientation)
-        begun = False
-        for poses in answers:
+        begun = self.begun
+        for poses in self.maker.of(answers):
             table = np.concatenate([poses.q, pose_table(poses.T, self.orientation or "rpy", self.units)], axis=1)
             head = b"" if begun else csv_header(columns)
             yield self.carried.before(head, csv_rows(table))
@@ -59,14 +84,14 @@ class PoseReport(AnswerStream[PoseBlock]):
         if not begun:
             yield self.carried.before(csv_header(columns), b"")
 
-    def npy(self, answers: Iterable[PoseBlock], stream: IO[bytes]) -> None:
+    def npy(self, answers: Iterable[Array], stream: IO[bytes]) -> None:
         """The matrices (m, 4, 4), or with --as the columns of the poses, or with frames all of these."""
         from robokin.tables.array_writer import ArrayWriter
 
         kind = self.orientation or "matrix"
         writer: ArrayWriter | None = None
         shape: tuple[int, ...] = (4, 4) if kind == "matrix" else (len(pose_columns(kind)),)
-        for poses in answers:
+        for poses in self.maker.of(answers):
             block = poses.T if kind == "matrix" else pose_table(poses.T, kind, self.units)
             if poses.frames is not None:
                 block = poses.frames
@@ -74,19 +99,20 @@ class PoseReport(AnswerStream[PoseBlock]):
             writer.write(block)
         (writer or ArrayWriter(stream, shape)).close()
 
-    def table(self, answers: Iterable[PoseBlock]) -> Iterator[bytes]:
+    def table(self, answers: Iterable[Array]) -> Iterator[bytes]:
         """A page, or a line for each configuration."""
         if self.alone:
             from robokin.reports.page_tables import render
 
-            yield from (render(*self.page(poses)) for poses in answers)
+            yield from (render(*self.page(poses)) for poses in self.maker.of(answers))
             return
         from robokin.reports.number_columns import NumberColumns
 
         kind = self.orientation or "rpy"
         head = f"{self.robot.name}  lengths in {self.units.length}, angles in {self.units.angle}\n\n"
+        head = "" if self.begun else head
         columns = None
-        for poses in answers:
+        for poses in self.maker.of(answers):
             numbers = range(poses.first, poses.first + len(poses.q))
             if kind == "matrix" or poses.frames is not None:
                 columns = columns or NumberColumns([("#", 5), ("frame", 5), ("", 1)], "nsap", "uuul", self.units)

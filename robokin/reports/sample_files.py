@@ -19,7 +19,7 @@ from typing import Any
 
 from robokin.errors import InputError, OutputError
 from robokin.files import open_path, read_up_to
-from robokin.jobs import ordered_map
+from robokin.jobs.ordered_map import ordered_map
 from robokin.reports.sample_rows import BLOCK, Samples
 from robokin.tables.sink import Destination
 from robokin.tables.text_source import Say
@@ -57,7 +57,7 @@ def write_samples(
     ):
         before = part.done
         first = -(-part.done // BLOCK)
-        blocks = ordered_map.in_order(samples.block, range(first, -(-total // BLOCK)), cores)
+        blocks = ordered_map(samples.block, range(first, -(-total // BLOCK)), cores)
         with contextlib.closing(_closable(blocks)) as whole:
             for data in whole:
                 part.append(data, min(part.done + BLOCK, total))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,7 +35,7 @@ def csv_columns(robot: Robot) -> list[str]:
 
 
 @dataclass
-class SolutionReport(AnswerStream[Array]):
+class SolutionReport(AnswerStream):
     """Answers to blocks of poses (m, 4, 4) [m] as bytes, and how many targets had none.
 
     `tolerances` [m, rad]: within them the nearest pose will do; None asks for exact ones. `arguments` go to
@@ -50,11 +50,26 @@ class SolutionReport(AnswerStream[Array]):
     carried: Carried = field(default_factory=nothing)
     count: int = 0
     unreached: int = 0
+    begun: bool = False
+    """Whether what stands above all answers is written."""
 
     @property
     def robot(self) -> Robot:
         """The robot that is asked about."""
         return self.records.robot
+
+    def from_number(self, first: int, carried: Carried) -> SolutionReport:
+        """The same for the targets behind the first ones."""
+        return replace(self, carried=carried, count=first, unreached=0, begun=first > 0)
+
+    @property
+    def found(self) -> int:
+        """How many targets had no solution."""
+        return self.unreached
+
+    def add(self, rows: int, found: int) -> None:
+        """Count targets that were answered elsewhere, and those among them without a solution."""
+        self.count, self.unreached = self.count + rows, self.unreached + found
 
     # The answers ------------------------------------------------------------------------------------------
 
@@ -97,7 +112,7 @@ class SolutionReport(AnswerStream[Array]):
 
     def csv(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """A row a solution. Works on arrays: most of the time of a batch would else go into objects."""
-        header = csv_header(csv_columns(self.robot))
+        header = b"" if self.begun else csv_header(csv_columns(self.robot))
         for T, batch in self.batches(blocks):
             listed = np.arange(batch.q.shape[1]) < batch.count[:, None]
             solutions = zip(
@@ -171,7 +186,7 @@ class SolutionReport(AnswerStream[Array]):
 
         limits, turns = bool(self.arguments.get("limits", True)), bool(self.arguments.get("turns", False))
         drawn = AnswerTable(self.records, limits, turns, self.arguments.get("most"))
-        head = drawn.head()
+        head = b"" if self.begun else drawn.head()
         for target, result in self.results(blocks):
             yield head + drawn.paragraph("" if self.alone else f"target {self.count}: ", result)
             head = b""

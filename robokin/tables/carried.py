@@ -57,6 +57,13 @@ class Carried:
         """The cells of some rows."""
         self.rows.extend(rows)
 
+    def taken_out(self) -> Carried:
+        """The rows that are here, by themselves: those of a block, for a worker."""
+        own = Carried((), self.say, wanted=self.wanted)
+        own.names, own.typed, own.rows = self.names, self.typed, self.rows
+        self.rows = deque()
+        return own
+
     def cells(self) -> list[str]:
         """The next row's cells, as text."""
         return [value if isinstance(value, str) else _text(value) for value in self._next()]

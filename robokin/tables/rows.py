@@ -12,7 +12,7 @@ from typing import Any
 
 from robokin.arrays import Array
 from robokin.errors import InputError
-from robokin.files import open_input
+from robokin.files import open_input, wait_for
 from robokin.tables.carried import Carried
 from robokin.tables.text_source import BYTE_ORDER_MARK, ROWS, Say
 from robokin.tables.wanted_columns import Wanted
@@ -21,6 +21,7 @@ from robokin.tables.wanted_columns import Wanted
 def kind_of_stream(stream: Any, name: str) -> tuple[str, Any]:
     """What a stream holds (csv, json or npy), by its name's ending or else by its first bytes; and it, to be read."""
     buffered = stream if hasattr(stream, "peek") else io.BufferedReader(stream)
+    wait_for(stream)
     head = bytes(buffered.peek(8))
     ending = Path(name).suffix.lower()
     if ending == ".npy" or head.startswith(b"\x93NUMPY"):

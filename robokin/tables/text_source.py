@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from robokin.errors import InputError
+from robokin.files import wait_for
 
 CHUNK = 1 << 18
 """Bytes read at once: about 2,000 lines of six numbers."""
@@ -46,7 +47,11 @@ class TextSource:
         """Blocks of whole lines, as they come. A line ends with LF, CR LF or CR, the last one perhaps with nothing."""
         kept = b""
         first = True
-        while chunk := self.stream.read1(CHUNK):
+        while True:
+            if not first:  # where the stream was looked at, its buffer has the first bytes
+                wait_for(self.stream)
+            if not (chunk := self.stream.read1(CHUNK)):
+                break
             if first:
                 chunk, first = self._beginning(chunk), False
             # Behind a CR that ends the chunk there may come its LF.

@@ -26,7 +26,7 @@ from itertools import pairwise
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.jobs.ordered_map import in_order
+from robokin.jobs.ordered_map import ordered_map
 from robokin.kernel.frames import pose
 from robokin.kernel.geometric_jacobian import motion
 from robokin.workspace.placing_joints import closed_form_of
@@ -162,7 +162,7 @@ def _values(space: Space, several: bool, cores: int | None, q: Array) -> Array:
     """(m,) the integrand at values (2, m) of the second and third joint."""
     blocks = [q[:, start : start + BLOCK] for start in range(0, q.shape[1], BLOCK)]
     work = partial(_block, space, several)
-    return np.concatenate(list(in_order(work, blocks, cores if len(blocks) >= FEW else 1)))
+    return np.concatenate(list(ordered_map(work, blocks, cores if len(blocks) >= FEW else 1)))
 
 
 def _block(space: Space, several: bool, rest: Array) -> Array:

@@ -16,7 +16,7 @@ from itertools import product
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
-from robokin.jobs.ordered_map import in_order
+from robokin.jobs.ordered_map import ordered_map
 from robokin.spatial import rotation_from_axis_angle
 from robokin.workspace.attitudes import Attitudes, small_turns
 from robokin.workspace.space import Space
@@ -92,7 +92,7 @@ def worst_beyond(oracle: Every, points: Array, radius: float, most: int, cores: 
     count = min(len(points), most)
     chosen = points[(np.arange(count) * len(points)) // max(count, 1)]
     blocks = np.array_split(chosen, max(min(count // 50, 32), 1))
-    found = list(in_order(partial(_worst, oracle, radius), blocks, cores))
+    found = list(ordered_map(partial(_worst, oracle, radius), blocks, cores))
     return Worst(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
 
 

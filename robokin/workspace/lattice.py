@@ -14,7 +14,7 @@ from itertools import product
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index, Whole
-from robokin.jobs.ordered_map import in_order
+from robokin.jobs.ordered_map import ordered_map
 from robokin.workspace.region import Region
 
 Oracle = Callable[[Array], Flags]
@@ -50,7 +50,7 @@ def answers(inside: Oracle, region: Region, cores: int | None, u: Array) -> Flag
     if not len(u):
         return np.zeros(0, dtype=bool)
     blocks = _blocks(region.points(u), inside)
-    return np.concatenate([np.asarray(part, dtype=bool) for part in in_order(inside, blocks, cores)])
+    return np.concatenate([np.asarray(part, dtype=bool) for part in ordered_map(inside, blocks, cores)])
 
 
 def _blocks(points: Array, inside: Oracle) -> list[Array]:
@@ -78,7 +78,7 @@ class CountedOracle:
             return self(u), np.full((len(u), 3), np.nan)
         self.count += len(u)
         blocks = _blocks(self.region.points(u), self.inside)
-        away = np.concatenate(list(in_order(self.lacks, blocks, self.cores)))
+        away = np.concatenate(list(ordered_map(self.lacks, blocks, self.cores)))
         return ~np.any(away, axis=1), away
 
 

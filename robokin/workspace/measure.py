@@ -19,7 +19,7 @@ from functools import partial
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.jobs.ordered_map import in_order
+from robokin.jobs.ordered_map import ordered_map
 from robokin.model import Robot
 from robokin.workspace.coarea import coarea_measure
 from robokin.workspace.descent import descent_of
@@ -186,7 +186,7 @@ def _arcs(space: Space, free: Space, cells: Cells, count: int, seed: int, cores:
     points = [cells.region.points(points_in(cells.region, low, high, count, rng)[0]) for _ in range(DRAWINGS)]
     drawn = np.column_stack([np.concatenate(points), rng.random(count * DRAWINGS)])
     blocks = np.array_split(drawn, max(len(drawn) // Membership.least, 1))
-    hits = np.concatenate(list(in_order(partial(_beyond, space, free), blocks, cores)))
+    hits = np.concatenate(list(ordered_map(partial(_beyond, space, free), blocks, cores)))
     first = space.moving[0]
     remaining = 1.0 - float(space.high[first] - space.low[first]) / TURN
     whole = float(np.sum(cells.region.sizes(low, high)))

@@ -24,7 +24,7 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
-from robokin.jobs.ordered_map import in_order
+from robokin.jobs.ordered_map import ordered_map
 from robokin.jobs.stages import stage
 from robokin.workspace.attitudes import Attitudes, Group, attitudes, group_of
 from robokin.workspace.critical import Every, worst_beyond
@@ -198,7 +198,7 @@ def _every_measure(
     oracles = []
     for grid in (fine, coarse):
         flags = [np.zeros((0, len(grid.rotations)), dtype=bool)]
-        flags += in_order(partial(table, space, grid), blocks, cores)
+        flags += ordered_map(partial(table, space, grid), blocks, cores)
         oracles.append(Every(space, grid, telling_order(np.concatenate(flags), seed)))
     proof, oracle = oracles
     d = len(region.low)

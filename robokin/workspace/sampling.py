@@ -15,7 +15,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import InputError
-from robokin.jobs.ordered_map import in_order
+from robokin.jobs.ordered_map import ordered_map
 from robokin.jobs.sequences import RANDOM_BLOCK, Kind, grid_sides, unit_points
 from robokin.kernel.chain import Chain, with_joints_at
 from robokin.kernel.columns import cos_sin_of_halves
@@ -98,7 +98,7 @@ def sample_blocks(
     total = sample_count(space, kind, samples, every)
     edges = [start, *range((start // TASK + 1) * TASK, total, TASK), total]
     tasks = ((first, last - first) for first, last in pairwise(edges) if last > first)
-    return in_order(partial(_sample, space, kind, seed, samples, every), tasks, cores)
+    return ordered_map(partial(_sample, space, kind, seed, samples, every), tasks, cores)
 
 
 def _sample(space: Space, kind: Kind, seed: int, samples: int, every: bool, task: tuple[int, int]) -> Sample:

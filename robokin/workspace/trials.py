@@ -11,7 +11,7 @@ from robokin.inverse.analysis import Task, analysis_of
 from robokin.inverse.numeric.closing import closing_nearest, exact_within
 from robokin.inverse.solve_blocks import BLOCK, quick_block, solve_block
 from robokin.inverse.verify import Found, within_limits
-from robokin.jobs.ordered_map import in_order
+from robokin.jobs.ordered_map import ordered_map
 from robokin.kernel.chain import chain_of
 from robokin.kernel.frames import pose
 from robokin.spatial import transform
@@ -146,7 +146,7 @@ def fractions(space: Space, tried: Attitudes, points: Array, cores: int | None =
     """(m,) the part of the orientations that each of points (m, 3) [m] can be reached with."""
     size = max(4 * BLOCK // len(tried.rotations), 1)
     blocks = [points[start : start + size] for start in range(0, len(points), size)]
-    tables = in_order(partial(table, space, tried), blocks, cores)
+    tables = ordered_map(partial(table, space, tried), blocks, cores)
     return np.concatenate([np.zeros(0), *(np.mean(flags, axis=1) for flags in tables)])
 
 

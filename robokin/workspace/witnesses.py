@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.jobs.ordered_map import in_order
+from robokin.jobs.ordered_map import ordered_map
 from robokin.jobs.sequences import unit_points
 from robokin.workspace.descent import descent_of
 from robokin.workspace.membership import Membership, reachable
@@ -43,7 +43,7 @@ def denied_share(space: Space, region: Region, count: int, seed: int, cores: int
         q = _witnesses(space, region, count, seed, round_)
         p = positions(space, q).T
         blocks = np.array_split(p, max(len(p) // Membership.least, 1))
-        denied = ~np.concatenate(list(in_order(partial(reachable, space), blocks, cores)))
+        denied = ~np.concatenate(list(ordered_map(partial(reachable, space), blocks, cores)))
         most = min(poisson_limit(int(np.sum(denied)), RISK) / max(len(p), 1), 1.0)
         if not denied.any():
             break

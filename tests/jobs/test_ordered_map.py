@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import multiprocessing
 import os
 import signal
@@ -13,8 +14,8 @@ import numpy as np
 import pytest
 
 from robokin.errors import InputError
-from robokin.jobs import ordered_map
-from robokin.jobs.ordered_map import WorkerError, in_order, usable_cores
+from robokin.jobs import ordered_map as jobs
+from robokin.jobs.ordered_map import WorkerError, ordered_map, usable_cores
 
 
 def square(x):
@@ -55,38 +56,38 @@ def no_children():
 
 @pytest.mark.parametrize("cores", [1, 2, 3, None])
 def test_results_come_in_order(cores):
-    assert list(in_order(square, range(50), cores)) == [x * x for x in range(50)]
+    assert list(ordered_map(square, range(50), cores)) == [x * x for x in range(50)]
     assert no_children()
 
 
 def test_slow_tasks_do_not_change_the_order():
-    results = list(in_order(slow_first, range(30), 3))
+    results = list(ordered_map(slow_first, range(30), 3))
     assert [x for x, _ in results] == list(range(30))
     assert len({process for _, process in results}) == 3
     assert os.getpid() not in {process for _, process in results}
 
 
 def test_threads_do_the_same(monkeypatch):
-    monkeypatch.setattr(ordered_map, "_can_fork", lambda: False)
-    assert list(in_order(square, range(50), 3)) == [x * x for x in range(50)]
+    monkeypatch.setattr(jobs, "_can_fork", lambda: False)
+    assert list(ordered_map(square, range(50), 3)) == [x * x for x in range(50)]
     with pytest.raises(ValueError, match="five"):
-        list(in_order(fail_at_five, range(50), 2))
+        list(ordered_map(fail_at_five, range(50), 2))
 
 
 def test_one_task_or_one_core_stays_in_this_process():
-    assert [pid for _, pid in in_order(slow_first, [1], 4)] == [os.getpid()]
-    assert {pid for _, pid in in_order(slow_first, range(4), 1)} == {os.getpid()}
-    assert list(in_order(square, [], 2)) == []
+    assert [pid for _, pid in ordered_map(slow_first, [1], 4)] == [os.getpid()]
+    assert {pid for _, pid in ordered_map(slow_first, range(4), 1)} == {os.getpid()}
+    assert list(ordered_map(square, [], 2)) == []
 
 
 def test_functions_need_not_pickle():
     factor = np.arange(3.0)
-    assert [float(value.sum()) for value in in_order(lambda x: factor * x, range(5), 2)] == [0, 3, 6, 9, 12]
+    assert [float(value.sum()) for value in ordered_map(lambda x: factor * x, range(5), 2)] == [0, 3, 6, 9, 12]
 
 
 def test_large_tasks_and_results_pass(rng):
     tasks = [rng.random(200_000) for _ in range(9)]
-    for task, result in zip(tasks, in_order(np.sqrt, tasks, 2), strict=True):
+    for task, result in zip(tasks, ordered_map(np.sqrt, tasks, 2), strict=True):
         assert np.array_equal(result, np.sqrt(task))
 
 
@@ -98,17 +99,17 @@ def test_tasks_are_drawn_as_they_are_needed():
             drawn.append(x)
             yield x
 
-    results = in_order(square, tasks(), 2)
+    results = ordered_map(square, tasks(), 2)
     for _ in range(3):
         next(results)
-    assert len(drawn) <= 3 + ordered_map.AHEAD * 2 + 2
+    assert len(drawn) <= 3 + jobs.AHEAD * 2 + 2
     results.close()
     assert no_children()
 
 
 @pytest.mark.parametrize("cores", [1, 2])
 def test_an_error_is_raised_in_its_turn(cores):
-    results = in_order(fail_at_five, range(20), cores)
+    results = ordered_map(fail_at_five, range(20), cores)
     assert [next(results) for _ in range(5)] == [0, 1, 2, 3, 4]
     with pytest.raises(ValueError, match="five is wrong"):
         next(results)
@@ -117,39 +118,39 @@ def test_an_error_is_raised_in_its_turn(cores):
 
 def test_an_error_that_cannot_travel_is_told_in_words():
     with pytest.raises(RuntimeError, match="StubbornError: 0 and more"):
-        list(in_order(fail_stubbornly, range(3), 2))
+        list(ordered_map(fail_stubbornly, range(3), 2))
 
 
 def test_a_worker_that_is_ended_is_noticed():
     with pytest.raises(WorkerError, match="ended from outside"):
-        list(in_order(end_at_five, range(20), 2))
+        list(ordered_map(end_at_five, range(20), 2))
     assert no_children()
 
 
 def test_a_worker_does_its_own_work_alone():
     def inner(x):
-        return sum(in_order(square, range(x), 2))
+        return sum(ordered_map(square, range(x), 2))
 
-    assert list(in_order(inner, range(5), 2)) == [0, 0, 1, 5, 14]
+    assert list(ordered_map(inner, range(5), 2)) == [0, 0, 1, 5, 14]
 
 
 def test_less_than_one_core_is_refused():
     with pytest.raises(InputError, match="found 0 cores, expected at least 1"):
-        in_order(square, range(3), 0)
+        ordered_map(square, range(3), 0)
     assert usable_cores() >= 1
 
 
 INTERRUPTED = """
 import signal, time
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs are started without
-from robokin.jobs.ordered_map import in_order
+from robokin.jobs.ordered_map import ordered_map
 
 def work(x):
     time.sleep(0.02)
     return x
 
 try:
-    for x in in_order(work, range(100_000), 2):
+    for x in ordered_map(work, range(100_000), 2):
         print(x, flush=True)
 except KeyboardInterrupt:
     print("interrupted", flush=True)
@@ -184,3 +185,40 @@ def test_workers_end_when_their_parent_is_killed():
             return
         time.sleep(0.05)
     pytest.fail("a worker outlived its parent")
+
+
+def test_an_error_of_the_blocks_comes_behind_the_results_before_it():
+    for good in (1, 5, 20):
+        drawn = (x if x < good else [][x] for x in range(50))
+        results = ordered_map(square, drawn, 2)
+        assert [next(results) for _ in range(good)] == [x * x for x in range(good)]
+        with pytest.raises(IndexError):
+            next(results)
+    assert no_children()
+
+
+def test_fresh_processes_do_the_same(monkeypatch):
+    monkeypatch.setattr(jobs, "_can_fork", lambda: False)
+    assert list(ordered_map(math.factorial, range(20), 2, workers="processes")) == [
+        math.factorial(x) for x in range(20)
+    ]
+    with pytest.raises(ValueError, match="factorial"):
+        list(ordered_map(math.factorial, [1, 2, -1], 2, workers="processes"))
+    assert no_children()
+
+
+def test_work_under_way_is_given_up_when_nobody_waits_for_it():
+    results = ordered_map(lambda x: time.sleep(30.0 * (x > 0)), range(8), 2)
+    next(results)
+    began = time.monotonic()
+    results.close()
+    assert time.monotonic() - began < 10.0
+    assert no_children()
+
+
+def test_the_window_bounds_what_is_drawn_before_the_oldest_result_is_taken():
+    drawn = []
+    results = ordered_map(square, (drawn.append(x) or x for x in range(1000)), 2, window=3)
+    next(results)
+    assert len(drawn) <= 4
+    results.close()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import robokin
-from robokin.jobs.ordered_map import in_order
+from robokin.jobs.ordered_map import ordered_map
 from robokin.jobs.stages import about, followed, stage
 
 
@@ -15,7 +15,7 @@ def test_stages_follow_one_another():
     with followed() as work:
         assert (work.done, work.now) == ([], "")
         stage("bounds")
-        assert list(in_order(double, [1, 2, 3], 1)) == [2, 4, 6]
+        assert list(ordered_map(double, [1, 2, 3], 1)) == [2, 4, 6]
         assert work.part == (3, 3)
         about("Arm")
         stage("volume")
@@ -37,5 +37,5 @@ def test_a_workspace_says_its_stages():
 def test_a_part_is_counted_while_it_is_made():
     with followed() as work:
         stage("parts")
-        for number, _ in enumerate(in_order(double, range(4), 1), start=1):
+        for number, _ in enumerate(ordered_map(double, range(4), 1), start=1):
             assert work.part == (number, 4)

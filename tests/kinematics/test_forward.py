@@ -152,3 +152,16 @@ def test_the_input_is_left_alone(rng):
     kept = q.copy()
     robokin.forward_kinematics(robokin.load("puma560"), q)
     assert np.array_equal(q, kept)
+
+
+@pytest.mark.parametrize("m", [0, 1, 8, 50])
+def test_a_batch_that_threads_share_has_the_same_poses(m, monkeypatch, rng):
+    from robokin.kinematics import forward
+
+    monkeypatch.setattr(forward, "BLOCK", 4)
+    monkeypatch.setattr(forward, "SHARE", 8)
+    robot = robokin.load("puma560")
+    q = rng.normal(size=(m, 6))
+    one = robokin.forward_kinematics(robot, q)
+    assert np.array_equal(one, robokin.forward_kinematics(robot, q, cores=3))
+    assert np.array_equal(one, robokin.forward_kinematics(robot, q, cores=None))

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from robokin.cli.completion import named_poses
+from robokin.cli.cores import MANY, CoresOption, cores_worth, whole_cores
 from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
 from robokin.cli.options import AsOption, DropOption, RobotArgument, option, orientation_kind
 from robokin.cli.statuses import say
@@ -41,6 +42,7 @@ def command(
     numbers: Annotated[bool, typer.Option("--numbers", help="With --symbolic: lengths and twists as numbers.")] = False,
     as_: AsOption = None,
     drop: DropOption = False,
+    cores: CoresOption = None,
     output: ArrayOutputOptions,
     description: DescriptionOptions,
 ) -> int:
@@ -76,7 +78,7 @@ def command(
             stream.write(symbolic_written(form, model, units, symbols))
         return 0
     kind = output.kind
-    orientation = orientation_kind(as_)
+    orientation, most = orientation_kind(as_), whole_cores(cores)
     model, units = description.robot(robot)
     carried = Carried(
         csv_columns(model, orientation) if kind == "csv" else RECORD_KEYS,
@@ -90,7 +92,8 @@ def command(
     if not streamed:
         for note in (note for given in blocks for note in maker.outside_notes(given)):
             say(note)
-    PoseReport(model, units, orientation, alone, carried).send(output.file, kind, maker.of(blocks))
+    used = cores_worth(most, "-" if input is None else input, MANY) if streamed else 1
+    PoseReport(maker, orientation, alone, carried).send(output.file, kind, blocks, used)
     if streamed and (summary := maker.outside_summary()):
         say(summary)
     return 0

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robokin.cli.completion import named_poses, words
+from robokin.cli.cores import SOME, CoresOption, cores_worth, whole_cores
 from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
 from robokin.cli.options import DropOption, RobotArgument, choose, option, orientation_kind, whole_number
 from robokin.cli.statuses import DONE, NO, say
@@ -80,6 +81,7 @@ def command(
         ),
     ] = None,
     drop: DropOption = False,
+    cores: CoresOption = None,
     output: ArrayOutputOptions,
     description: DescriptionOptions,
 ) -> int:
@@ -119,6 +121,7 @@ def command(
     from robokin.tables.target_rows import Targets
 
     kind = output.kind
+    used = cores_worth(whole_cores(cores), input, SOME)
     model, units = description.moving_robot(robot)
     target.exclude("--input", input)
     if input is None and (as_ is not None or drop):
@@ -165,7 +168,7 @@ def command(
 
     records = SolutionRecords(model, units, arguments["task"], held)
     answers = SolutionReport(records, tolerances, arguments, input is None, explain, carried)
-    answers.send(output.file, kind, blocks)
+    answers.send(output.file, kind, blocks, used)
     if not answers.alone and answers.unreached:
         verb = "has" if answers.unreached == 1 else "have"
         say(f"{answers.unreached} of {counted(answers.count, 'target')} {verb} no solution")

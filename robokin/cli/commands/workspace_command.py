@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from robokin.cli.completion import robots, words
+from robokin.cli.cores import CoresOption, whole_cores
 from robokin.cli.option_groups import DescriptionOptions
 from robokin.cli.options import (
     AsOption,
@@ -34,9 +35,6 @@ HELD = ("joints", "poses")
 
 MOST_SAMPLES = 10**12
 """Samples at most: days of work."""
-
-MOST_CORES = 1024
-"""Cores at most: more are a slip."""
 
 
 def command(
@@ -73,7 +71,7 @@ def command(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with a file of --output that was interrupted.")
     ] = False,
-    cores: Annotated[str | None, option("--cores", "N", "Cores to work on; the answer is the same.")] = None,
+    cores: CoresOption = None,
     format: FormatOption = None,
     json: JsonOption = False,
     description: DescriptionOptions,
@@ -105,7 +103,7 @@ def command(
         "samples": 131072 if count is None else count,
         "seed": whole_number(seed, "--seed", 0, 2**63 - 1, grouped=True) or 0,
         "sampling": choose(sampling, SAMPLINGS, "--sampling") or "sobol",
-        "cores": whole_number(cores, "--cores", 1, MOST_CORES, grouped=True),
+        "cores": whole_cores(cores),
     }
     _one_question({"--at": at, "--compare": compare, "--output": output}, {"--dextrous": dextrous, "--section": section,
                   "--slice": slice_, "--plot": plot, "--voxel": voxel})  # fmt: skip

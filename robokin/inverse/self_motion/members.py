@@ -21,7 +21,7 @@ from robokin.inverse.closed_form.spherical_wrist import SphericalTriple
 from robokin.inverse.self_motion.curve_tracing import Curve
 from robokin.inverse.self_motion.nearest_member import members_near, nearest_on_each
 from robokin.inverse.self_motion.null_motion import ZERO, errors
-from robokin.inverse.self_motion.solution_sets import families
+from robokin.inverse.self_motion.solution_sets import Families, families
 from robokin.inverse.verify import CLOSES, Found, with_ones_within, within_limits
 from robokin.inverse.window import least_singular_values
 from robokin.kernel.chain import Chain
@@ -130,28 +130,7 @@ def _once(
     # Of a target with more sets than are followed the members of the others are left out; it is said that some are.
     unfollowed = (sets.of < 0) & (local.dimension > 0) & np.isin(index[singular], np.array([*sets.open], dtype=np.intp))
     keep[singular[unfollowed]] = False
-    stands: list[np.intp] = []
-    curves: list[Curve] = []
-    lost: list[np.intp] = []
-    for i in np.unique(index[singular]):
-        mine = np.flatnonzero(index[singular] == i)
-        for number, curve in enumerate(sets.curves[i]):
-            members = singular[mine[sets.of[mine] == number]]
-            if not len(members):
-                continue
-            if any(part.ended == "lost" for part in curve.sheets or (curve,)):
-                lost.append(i)
-                settled = np.sum(np.maximum(position[members] / size, angle[members]) <= SETTLED)
-                if settled <= FEW and not _flat(chain, T[i], curve, size):
-                    # No set of solutions but a valley, in which the error nearly vanishes: what settled is alone.
-                    sets.of[mine[sets.of[mine] == number]] = -1
-                    continue
-            keep[members] = False
-            # The most exact member stands for all.
-            first = members[np.argmin(np.maximum(position[members] / size, angle[members]))]
-            keep[first] = True
-            stands.append(first)
-            curves.append(curve)
+    stands, curves, lost = _stand_ins(chain, T, sets, index, singular, np.maximum(position / size, angle), keep, size)
     motions: dict[int, list[SelfMotion]] = {}
     targets = index[stands]
     q[stands] = _members(chain, solver, T[targets], curves, q[stands], size, limits, rest, near)
@@ -177,6 +156,39 @@ def _once(
         np.unique(np.concatenate([unclear, crowded, np.array([*lost, *sets.open], dtype=np.intp)])),
         np.bincount(index[beside], minlength=len(T)),
     )
+
+
+def _stand_ins(
+    chain: Chain, T: Array, sets: Families, index: Index, singular: Index, off: Array, keep: Flags, size: float
+) -> tuple[list[np.intp], list[Curve], list[np.intp]]:
+    """Of each set one of the singular solutions (rows of index (s,)) that are on it, its curve, and the targets of sets
+    that could not be followed to their ends.
+
+    off: (s,) the errors [size and rad]. The other members are taken out of keep (s,); and what settled in a valley, in
+    which the error nearly vanishes, out of the sets.
+    """
+    stands: list[np.intp] = []
+    curves: list[Curve] = []
+    lost: list[np.intp] = []
+    for i in np.unique(index[singular]):
+        mine = np.flatnonzero(index[singular] == i)
+        for number, curve in enumerate(sets.curves[i]):
+            members = singular[mine[sets.of[mine] == number]]
+            if not len(members):
+                continue
+            if any(part.ended == "lost" for part in curve.sheets or (curve,)):
+                lost.append(i)
+                if np.sum(off[members] <= SETTLED) <= FEW and not _flat(chain, T[i], curve, size):
+                    # No set of solutions but a valley: what settled is alone.
+                    sets.of[mine[sets.of[mine] == number]] = -1
+                    continue
+            keep[members] = False
+            # The most exact member stands for all.
+            first = members[np.argmin(off[members])]
+            keep[first] = True
+            stands.append(first)
+            curves.append(curve)
+    return stands, curves, lost
 
 
 def _thinned(chain: Chain, found: Found, least: Array, size: float) -> tuple[Found, Array]:

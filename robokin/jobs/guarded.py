@@ -17,11 +17,12 @@ import os
 import signal
 import sys
 import warnings
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robokin.errors import RobokinError
+from robokin.jobs.ordered_map import default_signals, no_interrupt
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -50,29 +51,55 @@ class Overrun:
 
 
 def guarded(
-    function: Callable[[Task], Result], tasks: Sequence[Task], budget: float = BUDGET
+    function: Callable[[Task], Result], tasks: Sequence[Task], budget: float = BUDGET, cores: int = 1
 ) -> Generator[Result | Overrun, None, None]:
     """The result of function(task) for each task, in order, or an Overrun for one that took too much.
 
-    budget: seconds of processor time for each. A RobokinError of the function is raised here in its task's turn. Tasks
-    and results travel between processes and so must pickle.
+    budget: seconds of processor time for each. cores: so many processes share the tasks. A RobokinError of the function
+    is raised here in its task's turn. Tasks and results travel between processes and so must pickle.
     """
-    given = 0
-    while given < len(tasks):
-        connection, process = _started(function, tasks[given:], budget)
-        try:
-            while given < len(tasks):
-                outcome = _received(connection, process, budget)
-                given += 1
-                if isinstance(outcome, Exception):
-                    raise outcome
-                yield outcome
-                if isinstance(outcome, Overrun):
-                    break
-        finally:
+    with contextlib.ExitStack() as running:
+        lanes = [running.enter_context(_Lane(function, tasks[first::cores], budget)) for first in range(cores)]
+        for number in range(len(tasks)):
+            outcome = lanes[number % cores].next()
+            if isinstance(outcome, Exception):
+                raise outcome
+            yield outcome
+
+
+class _Lane:
+    """The tasks of one core: a process works on them one after the other, and another one goes on behind an Overrun."""
+
+    def __init__(self, function: Callable[[Any], Any], tasks: Sequence[Any], budget: float) -> None:
+        self.function, self.tasks, self.budget = function, tasks, budget
+        self.given = 0
+        self.running: tuple[Connection[Any, Any], BaseProcess] | None = None
+
+    def __enter__(self) -> _Lane:
+        """Begin with the first task that has no outcome yet."""
+        if self.given < len(self.tasks):
+            self.running = _started(self.function, self.tasks[self.given :], self.budget)
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """End, whatever goes on."""
+        if self.running is not None:
+            connection, process = self.running
+            self.running = None
             connection.close()
             process.kill()
             process.join()
+
+    def next(self) -> Any:
+        """What the process found for the next task, or an Overrun, or the error to raise."""
+        if self.running is None:
+            self.__enter__()
+        assert self.running is not None
+        outcome = _received(*self.running, self.budget)
+        self.given += 1
+        if isinstance(outcome, Overrun) or self.given == len(self.tasks):
+            self.__exit__()
+        return outcome
 
 
 def _started(
@@ -84,25 +111,12 @@ def _started(
     context: Any = get_context("fork" if LINUX else "spawn")
     ours, theirs = context.Pipe(duplex=False)
     process: BaseProcess = context.Process(target=_work, args=(function, tasks, budget, theirs, ours), daemon=True)
-    with warnings.catch_warnings(), _no_interrupt():
+    with warnings.catch_warnings(), no_interrupt():
         # Python warns of threads that a fork leaves behind: those of the algebra library, which knows of forks.
         warnings.simplefilter("ignore", DeprecationWarning)
         process.start()
     theirs.close()
     return ours, process
-
-
-@contextlib.contextmanager
-def _no_interrupt() -> Iterator[None]:
-    """Hold back Ctrl-C, so that a process is not hit by it before it has learned to ignore it."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _received(connection: Connection[Any, Any], process: BaseProcess, budget: float) -> Any:
@@ -154,12 +168,7 @@ def _work(
 
 def _alone() -> None:
     """Shut the process in: its own signals, no output, no files, no more memory than an answer may take."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    for name in ("SIGTERM", "SIGHUP", "SIGPROF"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), signal.SIG_DFL)
-    if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    default_signals()
     nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in (1, 2):
         os.dup2(nowhere, stream)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robokin.errors import DescriptionError, InputError
-from robokin.grading.guarded import LINUX, Overrun, guarded
+from robokin.jobs.guarded import LINUX, Overrun, guarded
 
 
 def answer(task):

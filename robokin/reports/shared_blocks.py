@@ -1,0 +1,53 @@
+"""Long batches on several cores: a worker makes the bytes of a block's answers, and they come out in order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from typing import Any
+
+from robokin.arrays import Array
+from robokin.jobs.ordered_map import ordered_map, usable_cores
+from robokin.tables.carried import Carried
+
+WINDOW = 3
+"""Blocks for each core that are under way, or wait to be written: a block's answers may be a dozen megabytes."""
+
+
+def blocks_written(
+    part: Callable[[str, int, Array, Carried], tuple[bytes, Any]],
+    kind: str,
+    blocks: Iterable[Array],
+    carried: Carried,
+    cores: int | None,
+) -> Iterator[tuple[bytes, int, Any]]:
+    """The bytes of each block (m, …), its number of rows, and what else `part` found.
+
+    part: makes the answers to a block in a format whose first row has a number, from 0, with what the rows carry.
+    JSON is a list of lines.
+    """
+    window = WINDOW * (cores or usable_cores())
+    made = partial(_made, part, "jsonl" if kind == "json" else kind)
+    before = b"[\n"
+    for data, rows, more in ordered_map(made, _numbered(blocks, carried), cores, window, "processes"):
+        if kind == "json":
+            # No text within a line of JSON has a line break.
+            data, before = before + data[:-1].replace(b"\n", b",\n"), b",\n"
+        yield data, rows, more
+    if kind == "json":
+        yield b"[]\n" if before == b"[\n" else b"\n]\n", 0, None
+
+
+def _numbered(blocks: Iterable[Array], carried: Carried) -> Iterator[tuple[int, Array, Carried]]:
+    """Each block with the number of its first row and what its rows carry."""
+    first = 0
+    for block in blocks:
+        yield first, block, carried.taken_out()
+        first += len(block)
+
+
+def _made(
+    part: Callable[[str, int, Array, Carried], tuple[bytes, Any]], kind: str, task: tuple[int, Array, Carried]
+) -> tuple[bytes, int, Any]:
+    data, more = part(kind, *task)
+    return data, len(task[1]), more
