@@ -104,6 +104,7 @@ class Subject:
 
     def mark(self, task: AnswerTask) -> Sequence[Item]:
         """The items of an answer. Raises InputError for one that cannot be read, if it is a slip of the teacher's."""
+        # No abstract method: a subject of no kind says quantities in its units, which is all that some ask of it.
         raise NotImplementedError
 
     def joints(self, q: Array) -> list[float]:

@@ -134,7 +134,7 @@ class Graph(Brief):
             if not 0 <= link < len(self.links):
                 raise InputError(f"found link {link} of {shown(owner)}, expected 0 to {len(self.links) - 1}")
         if self.couplings:
-            self.value_map  # noqa: B018 - that it raises is the point
+            _ = self.value_map  # a circle of couplings is refused at once
 
     @cached_property
     def topology(self) -> Topology:

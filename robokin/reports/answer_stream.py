@@ -19,9 +19,6 @@ class AnswerStream(ABC):
     alone: bool
     """Whether one question was asked, so that JSON is one document and text a page."""
 
-    carried: Carried
-    """What goes through from the input."""
-
     def write(self, kind: str, blocks: Iterable[Array], stream: IO[bytes]) -> Iterator[bytes]:
         """The answers to blocks in a format, piece by piece; arrays go to the stream themselves."""
         if kind == "npy":
@@ -29,44 +26,12 @@ class AnswerStream(ABC):
             return iter(())
         return {"csv": self.csv, "jsonl": self.jsonl, "json": self.json, "table": self.table}[kind](blocks)
 
-    def send(self, output: str | None, kind: str, blocks: Iterable[Array], cores: int | None = 1) -> None:
-        """Write the answers to a file, or to standard output, as they come; several cores (None: all) share them."""
+    def send(self, output: str | None, kind: str, blocks: Iterable[Array]) -> None:
+        """Write the answers to a file, or to standard output, as they come."""
         with sink(output) as stream:
-            here = cores == 1 or kind == "npy"
-            for data in self.write(kind, blocks, stream) if here else self.shared(kind, blocks, cores):
+            for data in self.write(kind, blocks, stream):
                 stream.write(data)
                 stream.flush()  # whoever waits for an answer gets it before the next question
-
-    def shared(self, kind: str, blocks: Iterable[Array], cores: int | None) -> Iterator[bytes]:
-        """The same bytes but for arrays, made on several cores."""
-        from robokin.reports.shared_blocks import blocks_written
-
-        total = 0
-        for data, rows, found in blocks_written(self.part, kind, blocks, self.carried, cores):
-            total += rows
-            if rows:
-                self.add(rows, found)
-            yield data
-        if not total and kind != "json":
-            yield from self.write(kind, (), io.BytesIO())
-
-    def part(self, kind: str, first: int, block: Array, carried: Carried) -> tuple[bytes, Any]:
-        """The answers to one block whose first question has the number first + 1, and what else is known of them."""
-        own = self.from_number(first, carried)
-        return b"".join(own.write(kind, [block], io.BytesIO())), own.found
-
-    def from_number(self, first: int, carried: Carried) -> AnswerStream:
-        """The same for the questions behind the first ones, under what stands above all answers."""
-        raise NotImplementedError
-
-    @property
-    def found(self) -> Any:
-        """What is known of the answers so far, for `add`."""
-        return None
-
-    def add(self, rows: int, found: Any) -> None:
-        """Count the answers to a block, and what was found, that another core made."""
-        raise NotImplementedError
 
     @abstractmethod
     def documents(self, blocks: Iterable[Array]) -> Iterator[Iterable[dict[str, Any]]]:
@@ -93,3 +58,47 @@ class AnswerStream(ABC):
     def jsonl(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """A document a line."""
         return (b"".join(map(json_line, documents)) for documents in self.documents(blocks))
+
+
+class SharedStream(AnswerStream):
+    """The same where several cores may share long files."""
+
+    carried: Carried
+    """What goes through from the input."""
+
+    cores: int | None
+    """How many share the blocks; None for all."""
+
+    def write(self, kind: str, blocks: Iterable[Array], stream: IO[bytes]) -> Iterator[bytes]:
+        """The answers to blocks in a format, piece by piece; the same bytes on any number of cores."""
+        if kind == "npy" or self.cores == 1:
+            yield from super().write(kind, blocks, stream)
+            return
+        from robokin.reports.shared_blocks import blocks_written
+
+        total = 0
+        for data, rows, found in blocks_written(self.part, kind, blocks, self.carried, self.cores):
+            total += rows
+            if rows:
+                self.add(rows, found)
+            yield data
+        if not total and kind != "json":
+            yield from super().write(kind, (), stream)
+
+    def part(self, kind: str, first: int, block: Array, carried: Carried) -> tuple[bytes, Any]:
+        """The answers to one block whose first question has the number first + 1, and what else is known of them."""
+        own = self.from_number(first, carried)
+        return b"".join(own.write(kind, [block], io.BytesIO())), own.found
+
+    @abstractmethod
+    def from_number(self, first: int, carried: Carried) -> SharedStream:
+        """The same on one core, for the questions behind the first ones, under what stands above all answers."""
+
+    @property
+    @abstractmethod
+    def found(self) -> Any:
+        """What is known of the answers so far, for `add`."""
+
+    @abstractmethod
+    def add(self, rows: int, found: Any) -> None:
+        """Count the answers to a block, and what was found, that another core made."""

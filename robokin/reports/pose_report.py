@@ -13,7 +13,7 @@ from robokin.model import Robot
 from robokin.number_text import show
 from robokin.records.pose_blocks import PoseMaker
 from robokin.records.pose_records import PoseBlock, configuration_records
-from robokin.reports.answer_stream import AnswerStream
+from robokin.reports.answer_stream import SharedStream
 from robokin.tables.carried import Carried, nothing
 from robokin.tables.orientations import orientation, pose_columns, pose_table
 from robokin.tables.written_rows import csv_header, csv_rows, page
@@ -29,7 +29,7 @@ def csv_columns(robot: Robot, orientation: str | None) -> list[str]:
 
 
 @dataclass(frozen=True)
-class PoseReport(AnswerStream):
+class PoseReport(SharedStream):
     """Poses at blocks of configurations as bytes; `maker` counts those outside the limits.
 
     `orientation` is how to say it, None as usual; `alone` tells that one configuration was asked for, by an option;
@@ -42,6 +42,7 @@ class PoseReport(AnswerStream):
     carried: Carried = field(default_factory=nothing)
     begun: bool = False
     """Whether what stands above all answers is written."""
+    cores: int | None = 1
 
     @property
     def robot(self) -> Robot:
@@ -55,7 +56,7 @@ class PoseReport(AnswerStream):
 
     def from_number(self, first: int, carried: Carried) -> PoseReport:
         """The same for the configurations behind the first ones."""
-        return replace(self, maker=self.maker.from_number(first), carried=carried, begun=first > 0)
+        return replace(self, maker=self.maker.from_number(first), carried=carried, begun=first > 0, cores=1)
 
     @property
     def found(self) -> tuple[int, int]:

@@ -16,7 +16,7 @@ from robokin.inverse.solve import solve_many
 from robokin.inverse.within_tolerance import within_tolerance
 from robokin.model import Robot
 from robokin.records.solution_records import SolutionRecords
-from robokin.reports.answer_stream import AnswerStream
+from robokin.reports.answer_stream import SharedStream
 from robokin.tables.carried import Carried, nothing
 from robokin.tables.written_rows import csv_header, csv_records
 
@@ -35,7 +35,7 @@ def csv_columns(robot: Robot) -> list[str]:
 
 
 @dataclass
-class SolutionReport(AnswerStream):
+class SolutionReport(SharedStream):
     """Answers to blocks of poses (m, 4, 4) [m] as bytes, and how many targets had none.
 
     `tolerances` [m, rad]: within them the nearest pose will do; None asks for exact ones. `arguments` go to
@@ -52,6 +52,7 @@ class SolutionReport(AnswerStream):
     unreached: int = 0
     begun: bool = False
     """Whether what stands above all answers is written."""
+    cores: int | None = 1
 
     @property
     def robot(self) -> Robot:
@@ -60,7 +61,7 @@ class SolutionReport(AnswerStream):
 
     def from_number(self, first: int, carried: Carried) -> SolutionReport:
         """The same for the targets behind the first ones."""
-        return replace(self, carried=carried, count=first, unreached=0, begun=first > 0)
+        return replace(self, carried=carried, count=first, unreached=0, begun=first > 0, cores=1)
 
     @property
     def found(self) -> int:

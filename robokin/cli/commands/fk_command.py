@@ -93,7 +93,7 @@ def command(
         for note in (note for given in blocks for note in maker.outside_notes(given)):
             say(note)
     used = cores_worth(most, "-" if input is None else input, MANY) if streamed else 1
-    PoseReport(maker, orientation, alone, carried).send(output.file, kind, blocks, used)
+    PoseReport(maker, orientation, alone, carried, cores=used).send(output.file, kind, blocks)
     if streamed and (summary := maker.outside_summary()):
         say(summary)
     return 0

@@ -167,8 +167,8 @@ def command(
         blocks = chain([] if first is None else [first], arriving)
 
     records = SolutionRecords(model, units, arguments["task"], held)
-    answers = SolutionReport(records, tolerances, arguments, input is None, explain, carried)
-    answers.send(output.file, kind, blocks, used)
+    answers = SolutionReport(records, tolerances, arguments, input is None, explain, carried, cores=used)
+    answers.send(output.file, kind, blocks)
     if not answers.alone and answers.unreached:
         verb = "has" if answers.unreached == 1 else "have"
         say(f"{answers.unreached} of {counted(answers.count, 'target')} {verb} no solution")
