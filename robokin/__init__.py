@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from robokin.errors import RobokinError as RobokinError
     from robokin.formats import load as load
     from robokin.formats import load_mechanism as load_mechanism
+    from robokin.formats import load_tree as load_tree
     from robokin.formats import load_wheeled as load_wheeled
     from robokin.formats.library import library_names as library_names
     from robokin.formats.pose_expressions import transform as transform
@@ -36,11 +37,13 @@ if TYPE_CHECKING:
     from robokin.kinematics.forward import link_frames as link_frames
     from robokin.kinematics.jacobian import jacobian as jacobian
     from robokin.kinematics.singular import singular_configurations as singular_configurations
+    from robokin.kinematics.tips import tip_poses as tip_poses
     from robokin.kinematics.velocity import differential_kinematics as differential_kinematics
     from robokin.mobility.manoeuvrability import manoeuvrability_of as manoeuvrability_of
     from robokin.mobility.verdict import mobility_of as mobility_of
     from robokin.model import Mechanism as Mechanism
     from robokin.model import Robot as Robot
+    from robokin.model import Tree as Tree
     from robokin.model import WheeledBase as WheeledBase
     from robokin.spatial.conversions import axis_angle_from_rotation as axis_angle_from_rotation
     from robokin.spatial.conversions import euler_from_rotation as euler_from_rotation
@@ -66,6 +69,7 @@ _HOMES = {
     "Units": "robokin.units",
     "load": "robokin.formats",
     "load_mechanism": "robokin.formats",
+    "load_tree": "robokin.formats",
     "load_wheeled": "robokin.formats",
     "RobokinError": "robokin.errors",
     "InputError": "robokin.errors",
@@ -74,6 +78,7 @@ _HOMES = {
     "link_frames": "robokin.kinematics.forward",
     "solve_ik": "robokin.inverse.solve",
     "jacobian": "robokin.kinematics.jacobian",
+    "tip_poses": "robokin.kinematics.tips",
     "differential_kinematics": "robokin.kinematics.velocity",
     "singular_configurations": "robokin.kinematics.singular",
     "follow_line": "robokin.inverse.joint_paths",
@@ -82,6 +87,7 @@ _HOMES = {
     "manoeuvrability_of": "robokin.mobility.manoeuvrability",
     "Mechanism": "robokin.model",
     "Robot": "robokin.model",
+    "Tree": "robokin.model",
     "analyse_workspace": "robokin.workspace.analyse",
     "WheeledBase": "robokin.model",
     "draw": "robokin.drawings",

@@ -18,11 +18,11 @@ import robokin
 PAGE = Path(__file__).parent.parent / "docs" / "api.md"
 
 GROUPS = {
-    "Descriptions": ("load", "load_mechanism", "load_wheeled", "library_names", "transform", "Units"),
-    "Models": ("Robot", "Mechanism", "WheeledBase"),
+    "Descriptions": ("load", "load_tree", "load_mechanism", "load_wheeled", "library_names", "transform", "Units"),
+    "Models": ("Robot", "Tree", "Mechanism", "WheeledBase"),
     "Kinematics": (
-        "forward_kinematics", "link_frames", "jacobian", "differential_kinematics", "singular_configurations",
-        "symbols",
+        "forward_kinematics", "tip_poses", "link_frames", "jacobian", "differential_kinematics",
+        "singular_configurations", "symbols",
     ),
     "Inverse kinematics and paths": ("solve_ik", "interpolate_joints", "follow_line"),
     "Workspace and mobility": ("analyse_workspace", "mobility_of", "manoeuvrability_of"),

@@ -216,7 +216,7 @@ class MarkOptions(DescriptionOptions, DeliveryOptions, RuleOptions):
         from robokin.cli.options import parameter_overrides
         from robokin.grading.tolerance import default_tolerance
 
-        robot = load_robot(name, parameter_overrides(self.set_))
+        robot = load_robot(name, parameter_overrides(self.set_), self.part())
         if not (robot.n or table):
             raise InputError(f"{robot.name} has no joints, expected a robot that can move")
         units = self.over(robot.units)

@@ -11,13 +11,13 @@ from robokin.cli.arguments import parse_configuration
 from robokin.cli.statuses import say
 from robokin.errors import InputError
 from robokin.formats.typed_angles import unit_of_values
-from robokin.model import Robot
+from robokin.model import Robot, Tree
 from robokin.tables.carried import Carried
 from robokin.units import Units
 
 
 def configurations(
-    robot: Robot, units: Units, q: list[str] | None, input: str | None, carried: Carried, *, still: bool = False
+    robot: Robot | Tree, units: Units, q: list[str] | None, input: str | None, carried: Carried, *, still: bool = False
 ) -> tuple[Iterable[Array], bool, bool]:
     """Blocks of configurations (m, n) in the units, whether they are a stream, and whether there is just one.
 
@@ -47,7 +47,7 @@ def configurations(
     return [given], False, len(given) == 1
 
 
-def read_configurations(source: str, robot: Robot, units: Units, carried: Carried) -> Iterator[Array]:
+def read_configurations(source: str, robot: Robot | Tree, units: Units, carried: Carried) -> Iterator[Array]:
     """Blocks of configurations (m, n) from a file or from standard input, in the units.
 
     `carried` takes what is not understood.
@@ -61,7 +61,7 @@ def read_configurations(source: str, robot: Robot, units: Units, carried: Carrie
         yield block
 
 
-def say_unit(robot: Robot, units: Units, q: Array, where: str = "") -> None:
+def say_unit(robot: Robot | Tree, units: Units, q: Array, where: str = "") -> None:
     """A note where joint values q: (m, n) look like angles in the other unit."""
     if note := unit_of_values(robot, units, q):
         say(where + note)

@@ -13,19 +13,25 @@ from typing import TYPE_CHECKING, Any, get_type_hints
 from robokin.cli.options import (
     AngleOption,
     ArrayOutputOption,
+    ExactOption,
     FormatOption,
     JsonOption,
     LengthOption,
     OutputOption,
+    PackageOption,
+    RootOption,
     SetOption,
+    TipOption,
     effective_units,
     output_format,
+    package_folders,
     parameter_overrides,
 )
 from robokin.errors import InputError
 
 if TYPE_CHECKING:
-    from robokin.model import Mechanism, Robot, WheeledBase
+    from robokin.formats.part import Part
+    from robokin.model import Mechanism, Robot, Tree, WheeledBase
     from robokin.units import Units
 
 
@@ -82,19 +88,45 @@ class DescriptionOptions(UnitOptions):
     """How a description is read, and the units of what goes in and out."""
 
     set_: SetOption = None
+    tip: TipOption = None
+    root: RootOption = None
+    exact: ExactOption = False
+    package: PackageOption = None
+
+    def part(self) -> Part:
+        """Which part of a description is meant. Raises InputError."""
+        from robokin.formats.part import Part
+
+        return Part(self.tip, self.root, self.exact, package_folders(self.package))
 
     def entry(self, name: str, mode: int | None = None) -> Robot | Mechanism | WheeledBase:
-        """What a name or a path describes; `mode` is the way to put a mechanism together. Raises InputError."""
+        """What a name or a path describes, of a tree a chain. Raises InputError.
+
+        `mode` is the way to put a mechanism together.
+        """
         from robokin.cli.arguments import load_entry
 
-        return load_entry(name, parameter_overrides(self.set_), mode)
+        return load_entry(name, parameter_overrides(self.set_), mode, self.part())
+
+    def anything(self, name: str, mode: int | None = None) -> Robot | Mechanism | WheeledBase | Tree:
+        """The same, or where several tips are meant the tree. Raises InputError."""
+        from robokin.cli.arguments import load_noted
+
+        return load_noted(name, parameter_overrides(self.set_), mode, self.part())
 
     def robot(self, name: str) -> tuple[Robot, Units]:
         """The robot that a name or a path describes, and the units to use. Raises InputError, also for no robot."""
         from robokin.cli.arguments import load_robot
 
-        robot = load_robot(name, parameter_overrides(self.set_))
+        robot = load_robot(name, parameter_overrides(self.set_), self.part())
         return robot, self.over(robot.units)
+
+    def robot_or_tree(self, name: str) -> tuple[Robot | Tree, Units]:
+        """The same, or where several tips are meant the tree. Raises InputError."""
+        from robokin.cli.arguments import load_jointed
+
+        found = load_jointed(name, parameter_overrides(self.set_), self.part())
+        return found, self.over(found.units)
 
     def moving_robot(self, name: str) -> tuple[Robot, Units]:
         """The same of a robot that has joints. Raises InputError."""

@@ -40,6 +40,20 @@ LengthOption = Annotated[
 SetOption = Annotated[
     list[str] | None, option("--set", "NAME=VALUE", "Override a parameter of the description; repeatable.")
 ]
+TipOption = Annotated[
+    str | None,
+    option("--tip", "NAME", "The tip or link to which the chain of a tree leads.  [default: the only tip]"),
+]
+RootOption = Annotated[
+    str | None, option("--root", "NAME", "The link from which the chain of a tree leads.  [default: the root]")
+]
+ExactOption = Annotated[
+    bool,
+    typer.Option("--exact", help="Take angles of a URDF, MJCF or SDF file as written: 1.5708 is no right angle."),
+]
+PackageOption = Annotated[
+    list[str] | None, option("--package", "NAME=DIR", "The folder of a package that a xacro file names; repeatable.")
+]
 OutputOption = Annotated[
     str | None, option("--output -o", "FILE", "Write to a file, by its ending: .csv, .jsonl or .json.")
 ]
@@ -98,6 +112,17 @@ def parameter_overrides(settings: list[str] | None) -> dict[str, str]:
             raise InputError(f"--set: found '{setting}', expected NAME=VALUE")
         overrides[name.strip()] = value.strip()
     return overrides
+
+
+def package_folders(settings: list[str] | None) -> dict[str, str]:
+    """The names and folders of --package. Raises InputError."""
+    folders: dict[str, str] = {}
+    for setting in settings or []:
+        name, equals, folder = setting.partition("=")
+        if not equals or not name.strip() or not folder.strip():
+            raise InputError(f"--package: found '{shown(setting)}', expected NAME=DIR")
+        folders[name.strip()] = folder.strip()
+    return folders
 
 
 def whole_number(text: str | None, option: str, least: int, most: int, *, grouped: bool = False) -> int | None:

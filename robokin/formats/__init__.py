@@ -11,18 +11,21 @@ from robokin.expected import described
 from robokin.formats.library import library_names, load_any
 
 if TYPE_CHECKING:
+    from robokin.formats.part import Part
     from robokin.formats.read import read_file as read_file
     from robokin.formats.read import read_text as read_text
-    from robokin.model import Mechanism, Robot, WheeledBase
+    from robokin.model import Mechanism, Robot, Tree, WheeledBase
 
-__all__ = ["library_names", "load", "load_any", "load_mechanism", "load_wheeled", "read_file", "read_text"]
+__all__ = [
+    "library_names", "load", "load_any", "load_mechanism", "load_tree", "load_wheeled", "read_file", "read_text",
+]  # fmt: skip
 
-_KINDS = {"Robot": "robot", "Mechanism": "mechanism", "WheeledBase": "wheeled base"}
+_KINDS = {"Robot": "robot", "Mechanism": "mechanism", "WheeledBase": "wheeled base", "Tree": "tree of links"}
 """What a message calls that which a description describes."""
 
 
-def _kind(entry: Robot | Mechanism | WheeledBase) -> str:
-    """`robot`, `mechanism` or `wheeled base`."""
+def _kind(entry: Robot | Mechanism | WheeledBase | Tree) -> str:
+    """`robot`, `mechanism`, `wheeled base` or `tree of links`."""
     return _KINDS[type(entry).__name__]
 
 
@@ -35,19 +38,46 @@ def __getattr__(name: str) -> object:
     return getattr(read, name)
 
 
-def load(name_or_path: str | Path, **parameters: float | str) -> Robot:
-    """The robot with a library name ("puma560") or in a file ("arm.yaml"; a path has a / or an ending).
+def load(
+    name_or_path: str | Path,
+    *,
+    tip: str | None = None,
+    root: str | None = None,
+    exact: bool = False,
+    **parameters: float | str,
+) -> Robot:
+    """The robot with a library name ("puma560") or in a file ("arm.yaml", "arm.urdf"; a path has a / or an ending).
 
-    `parameters` overrides the description's parameters by numbers or expressions. They are the
+    `tip` and `root` name the links between which the chain of a tree is, by default its only tip and its root. `exact`
+    takes angles of a URDF, MJCF or SDF file as they are written, right angles cut in print too. `parameters` overrides
+    the description's parameters by numbers or expressions. They are the
     file's own cells and so in the file's units, whatever else is in SI: a parameter has no dimension.
-    Raises InputError for an unknown name or a file that cannot be read, DescriptionError with line and
-    column for a wrong description.
+    Raises InputError for an unknown name, a file that cannot be read and for a tree with several tips where none is
+    named, DescriptionError with line and column for a wrong description.
     """
-    from robokin.model import Robot
+    from robokin.formats.part import Part
+    from robokin.model import Robot, Tree
 
-    loaded = _loaded(name_or_path, parameters)
+    loaded = _loaded(name_or_path, parameters, Part(tip, root, exact))
+    if isinstance(loaded, Tree):
+        return loaded.robot()
     if not isinstance(loaded, Robot):
         raise InputError(f"{name_or_path} is a {_kind(loaded)}, expected a robot")
+    return loaded
+
+
+def load_tree(name_or_path: str | Path, *, exact: bool = False, **parameters: float | str) -> Tree:
+    """The tree of links with a library name or in a file, as `load` has it of robots; a robot is a tree of one branch.
+
+    Raises InputError for an unknown name and for a file that cannot be read or is of something else, DescriptionError
+    with line and column for a wrong description.
+    """
+    from robokin.formats.part import Part
+    from robokin.model import Tree
+
+    loaded = _loaded(name_or_path, parameters, Part(exact=exact, whole=True))
+    if not isinstance(loaded, Tree):
+        raise InputError(f"{name_or_path} is a {_kind(loaded)}, expected a tree or a robot")
     return loaded
 
 
@@ -79,13 +109,16 @@ def load_wheeled(name_or_path: str | Path, **parameters: float | str) -> Wheeled
     return loaded
 
 
-def _loaded(name_or_path: str | Path, parameters: dict[str, float | str]) -> Robot | Mechanism | WheeledBase:
+def _loaded(
+    name_or_path: str | Path, parameters: dict[str, float | str], part: Part | None = None
+) -> Robot | Mechanism | WheeledBase | Tree:
     if not isinstance(name_or_path, str | Path):
         if not isinstance(name_or_path, PathLike):
             found = described(name_or_path)
             raise InputTypeError(f"name_or_path: found {found}, expected a name of the library or a file's path")
         name_or_path = Path(fsdecode(name_or_path))
-    return load_any(name_or_path, {name: _expression(name, value) for name, value in parameters.items()})
+    overrides = {name: _expression(name, value) for name, value in parameters.items()}
+    return load_any(name_or_path, overrides, part=part)
 
 
 def _expression(name: str, value: float | str) -> str:

@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robokin.errors import MAX_SHOWN, InputError, nearest, or_list, shown
+from robokin.formats.part import Part
 
 if TYPE_CHECKING:
-    from robokin.model import Mechanism, Robot, WheeledBase
+    from robokin.model import Mechanism, Robot, Tree, WheeledBase
 
 KINDS = ("arms", "hands", "mechanisms", "bases")
 """The folders of the library."""
@@ -59,20 +60,39 @@ def is_path(name: str) -> bool:
     return "/" in name or os.sep in name or bool(Path(name).suffix)
 
 
+FOREIGN = (".urdf", ".xacro", ".xml", ".mjcf", ".sdf")
+"""Endings of descriptions in other formats than robokin's own."""
+
+
 def load_any(
-    name_or_path: str | Path, overrides: Mapping[str, str] | None = None, mode: int | None = None
-) -> Robot | Mechanism | WheeledBase:
-    """The robot, mechanism or wheeled base with a library name or in a file.
+    name_or_path: str | Path,
+    overrides: Mapping[str, str] | None = None,
+    mode: int | None = None,
+    part: Part | None = None,
+) -> Robot | Mechanism | WheeledBase | Tree:
+    """The robot, mechanism, wheeled base or tree with a library name or in a file.
 
     `overrides` replaces parameters by expressions in the file's units; `mode` is the way in which a mechanism by
-    lengths is put together, instead of the file's. A name may be in any case. Raises InputError for an unknown name,
-    with those that are near, and DescriptionError for a wrong description.
+    lengths is put together, instead of the file's; `part` says which chain of a tree is meant, and how a file of
+    another format is read. A tree with one tip is the robot that leads there. A name may be in any case. Raises
+    InputError for an unknown name, with those that are near, and DescriptionError for a wrong description.
     """
+    part = part or Part()
+    return part.of(_described(name_or_path, overrides, mode, part))
+
+
+def _described(
+    name_or_path: str | Path, overrides: Mapping[str, str] | None, mode: int | None, part: Part
+) -> Robot | Mechanism | WheeledBase | Tree:
     from robokin.formats.read import read_file  # a list of names needs no reader
 
     name = str(name_or_path)
     if isinstance(name_or_path, Path) or is_path(name):
         try:
+            if Path(name_or_path).suffix.lower() in FOREIGN:
+                from robokin.formats.foreign_files import read_foreign
+
+                return read_foreign(Path(name_or_path), overrides or {}, mode, part)
             return read_file(Path(name_or_path), overrides, mode=mode)
         except InputError as error:
             raise _with_hint(error, Path(name_or_path)) from None

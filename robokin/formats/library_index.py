@@ -54,7 +54,7 @@ def library_entries() -> list[Entry]:
 def entry_of(path: Path) -> Entry:
     """The entry of a description of the library, by reading it."""
     from robokin.formats.read import read_file
-    from robokin.model import Mechanism, Robot
+    from robokin.model import Mechanism, Robot, Tree
 
     loaded = read_file(path, id=path.stem)
     dof: Any
@@ -67,6 +67,9 @@ def entry_of(path: Path) -> Entry:
     elif isinstance(loaded, Mechanism):
         kind, dof = "mechanism", loaded.expected.get("mobility")
         words = ["mechanism", loaded.space, *sorted({joint.type for joint in loaded.joints})]
+    elif isinstance(loaded, Tree):
+        kind, dof = "tree", loaded.n
+        words = ["tree", "branches", *loaded.tips]
     else:
         kind, dof = "wheeled", loaded.expected.get("mobility")
         words = ["wheeled base", "mobile", *sorted({wheel.type for wheel in loaded.wheels})]

@@ -14,9 +14,9 @@ from robokin.formats.foreign_texts import other_format
 from robokin.formats.node_values import Context, choice_of, expression_text, fields_of, text_of
 from robokin.formats.number_expressions import NAME, RESERVED, Scope, Value
 from robokin.formats.parameters import Parameters
-from robokin.formats.schema import KINDS, MECHANISM, ROBOT, UNITS, VERSION, WHEELED
+from robokin.formats.schema import KINDS, MECHANISM, ROBOT, TREE, UNITS, VERSION, WHEELED
 from robokin.formats.yaml_tree import FilePlace, Mapping, Node, Scalar, describe, read_tree
-from robokin.model import Mechanism, Robot, WheeledBase
+from robokin.model import Mechanism, Robot, Tree, WheeledBase
 from robokin.units import Units
 
 MAX_BYTES = 1 << 20
@@ -25,8 +25,8 @@ MAX_BYTES = 1 << 20
 
 def read_file(
     path: Path, overrides: MappingType[str, str] | None = None, id: str = "", mode: int | None = None
-) -> Robot | Mechanism | WheeledBase:
-    """The robot, mechanism or wheeled base in a file.
+) -> Robot | Mechanism | WheeledBase | Tree:
+    """The robot, mechanism, wheeled base or tree in a file.
 
     `overrides` replaces parameters by expressions in the file's units, `mode` says in which way a mechanism by lengths
     is put together. Raises DescriptionError with line and column when the description is wrong, InputError when the
@@ -45,7 +45,7 @@ def read_bytes(
     overrides: MappingType[str, str] | None = None,
     id: str = "",
     mode: int | None = None,
-) -> Robot | Mechanism | WheeledBase:
+) -> Robot | Mechanism | WheeledBase | Tree:
     """What the bytes of a file describe; `place` is the name that errors give it. Raises DescriptionError."""
     if len(data) > MAX_BYTES:
         raise DescriptionError("found a file over 1 MiB, expected a description: a page of text", place, 1, 1)
@@ -64,8 +64,8 @@ def read_text(
     overrides: MappingType[str, str] | None = None,
     id: str = "",
     mode: int | None = None,
-) -> Robot | Mechanism | WheeledBase:
-    """The robot, mechanism or wheeled base that a text describes; `file` is the name that errors give it.
+) -> Robot | Mechanism | WheeledBase | Tree:
+    """The robot, mechanism, wheeled base or tree that a text describes; `file` is the name that errors give it.
 
     Raises one DescriptionError for all mistakes of the text.
     """
@@ -80,7 +80,7 @@ def read_text(
 
 def _described(
     text: str, file: str, overrides: MappingType[str, str], id: str, mode: int | None, faults: Faults
-) -> Robot | Mechanism | WheeledBase:
+) -> Robot | Mechanism | WheeledBase | Tree:
     try:
         root = read_tree(text, file, faults)
         if not isinstance(root, Mapping):
@@ -109,6 +109,12 @@ def _described(
         return read_mechanism(
             _head(fields_of(root, MECHANISM, "a mechanism", faults), overrides, id, file, faults), mode
         )
+    if kind == "tree":
+        from robokin.formats.tree_fields import read_tree_fields
+
+        head = _head(fields_of(root, TREE, "a tree", faults), overrides, id, file, faults)
+        _refuse_mode(mode, head)
+        return read_tree_fields(head)
     from robokin.formats.robot_fields import read_robot
 
     head = _head(fields_of(root, ROBOT, "a robot", faults), overrides, id, file, faults)
@@ -134,7 +140,7 @@ def _check_version(root: Mapping, faults: Faults) -> None:
     for near in nearest("robokin", root.entries, 1):
         error = root.keys.pop(near).error(f"found the unknown key '{shown(near)}', expected `robokin: {VERSION}`")
         del root.entries[near]
-    if not {"joints", "links", "wheels"} & root.entries.keys():
+    if not {"joints", "branches", "links", "wheels"} & root.entries.keys():
         faults.stop()  # what is wrong may be why there is no table
         raise error
     faults.add(error)
@@ -142,23 +148,25 @@ def _check_version(root: Mapping, faults: Faults) -> None:
 
 
 def _kind(root: Mapping, faults: Faults) -> str:
-    """What is described: `robot`, `mechanism` or `wheeled`, as the keys say it; a wrong `kind` is taken out."""
+    """What is described: `robot`, `tree`, `mechanism` or `wheeled`, as the keys say it; a wrong `kind` is taken out."""
     wheeled = "kind" in root.entries or "wheels" in root.entries
     if "kind" in root.entries:
         known = faults.attempt(False, _check_kind, root.entries["kind"])
         if not known:
-            wheeled = "wheels" in root.entries or not {"joints", "links"} & root.entries.keys()
+            wheeled = "wheels" in root.entries or not {"joints", "branches", "links"} & root.entries.keys()
             root.entries["kind"] = Scalar("", root.entries["kind"].mark.silent())
             if not wheeled:
                 del root.entries["kind"], root.keys["kind"]
     if wheeled:
         return "wheeled"
+    if "branches" in root.entries:
+        return "tree"
     return "mechanism" if "links" in root.entries or "space" in root.entries else "robot"
 
 
 def _check_kind(node: Node) -> bool:
     text = text_of(node, "the kind: wheeled")
-    if text in ("robot", "mechanism"):
+    if text in ("robot", "tree", "mechanism"):
         raise node.mark.error(f"found '{text}' as the kind, expected no 'kind' in the description of a {text}")
     return bool(choice_of(node, KINDS, "the kind"))
 

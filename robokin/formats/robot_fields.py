@@ -37,7 +37,7 @@ def read_robot(head: Head) -> Robot:
         attempt(np.eye(4), transform_of, fields[name], context, name) if name in fields else np.eye(4)
         for name in ("base", "tool")
     )
-    poses = attempt({}, _poses, fields["poses"], types, context) if "poses" in fields else {}
+    poses = attempt({}, poses_of, fields["poses"], types, context) if "poses" in fields else {}
     context.faults.stop()
     assert rows is not None and convention is not None  # else there was a mistake
     robot = Robot(
@@ -62,7 +62,7 @@ def read_robot(head: Head) -> Robot:
     return replace(robot, notes=notes_on(context, robot))
 
 
-def _poses(node: Node, types: tuple[JointType, ...] | None, context: Context) -> dict[str, Array]:
+def poses_of(node: Node, types: tuple[JointType, ...] | None, context: Context) -> dict[str, Array]:
     """The poses by name; types: those of the joints, None where they are not known."""
     if not isinstance(node, Mapping):
         raise node.mark.error(f"found {describe(node)}, expected poses: a mapping of names to lists of joint values")

@@ -75,6 +75,38 @@ FRAME_ROW: Fields = {
     "axis": Field("axis", "x, y, z or [x, y, z]; default z"),
 }
 
+TREE: Fields = {
+    **COMMON,
+    "convention": Field("text", "of every branch that states none; default standard", choices=CONVENTIONS),
+    "base": Field("transform", "fixed transform from the world to the base"),
+    "branches": Field("branches", "the branches by name, each a serial chain", required=True),
+    "couplings": Field("couplings", "joints whose values hang on those of others"),
+    "tips": Field("tips", "the frames that are asked for; default every branch on which nothing stands"),
+    "poses": Field("poses", "named configurations, usable as --q NAME"),
+}
+
+BRANCH: Fields = {
+    "on": Field("text", "the branch, or the joint (branch.joint), at whose end it stands; default the base"),
+    "convention": Field("text", "default that of the file", choices=CONVENTIONS),
+    "base": Field("transform", "fixed transform from there to its frame 0"),
+    "joints": Field("rows", "the table: a list of rows, or one list for each column", required=True),
+    "tool": Field("transform", "fixed transform from its last frame to its end"),
+}
+
+COUPLING: Fields = {
+    "joint": Field("text", "the joint whose value hangs on others'", required=True),
+    "follows": Field("coupled", "the joint that it follows, without a variable of its own, or joints with ratios"),
+    "adds": Field("coupled", "the joint whose value is added to its own variable, or joints with ratios"),
+    "ratio": Field("number", "of its value to the other's, in the units of the file; default 1"),
+    "offset": Field("number", "what is added to its value; default 0"),
+}
+
+TIP: Fields = {
+    "name": Field("text", "what the tip is called", required=True),
+    "on": Field("text", "the branch, or the joint (branch.joint), that it is on; default the branch of its name"),
+    "tool": Field("transform", "fixed transform from there to the tip"),
+}
+
 MECHANISM: Fields = {
     **COMMON,
     "space": Field("text", "the space that the links move in", required=True, choices=SPACES),
@@ -184,6 +216,10 @@ def json_schema() -> dict[str, Any]:
         "units": _object(UNITS),
         "parameters": {"type": ["object", "null"], "additionalProperties": {"$ref": "#/$defs/number"}},
         "poses": {"type": "object", "additionalProperties": numbers},
+        "branches": {"type": "object", "additionalProperties": _object(BRANCH), "minProperties": 1},
+        "coupled": {"anyOf": [text, {"type": "object", "additionalProperties": {"$ref": "#/$defs/number"}}]},
+        "couplings": {"type": "array", "items": _object(COUPLING)},
+        "tips": {"type": "array", "items": {"anyOf": [text, _object(TIP)]}, "minItems": 1},
         "expected": _object(EXPECTED),
         "base_expected": _object(BASE_EXPECTED),
         "limits": {**numbers, "minItems": 2, "maxItems": 2},
@@ -215,8 +251,8 @@ def json_schema() -> dict[str, Any]:
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "robokin description, version 1",
-        "description": "A robot (a serial chain), a mechanism (links and joints, with loops), or a wheeled base.",
-        "anyOf": [_object(ROBOT), _object(MECHANISM), _object(WHEELED)],
+        "description": "A robot, a tree of branches, a mechanism (links and joints, with loops), or a wheeled base.",
+        "anyOf": [_object(ROBOT), _object(TREE), _object(MECHANISM), _object(WHEELED)],
         "$defs": definitions,
     }
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.formats.written_numbers import is_part_of_pi, significant
-from robokin.model import Robot
+from robokin.model import Robot, Tree
 from robokin.units import Units
 
 LOOKED_AT = 600
@@ -24,7 +24,7 @@ TURNS = 20.0
 """A joint value [rad] that is hardly meant, three turns."""
 
 
-def unit_of_values(robot: Robot, units: Units, q: Array) -> str:
+def unit_of_values(robot: Robot | Tree, units: Units, q: Array) -> str:
     """A sentence on joint values q: (m, n), in the units, that are likely in the other angle unit; "" for none."""
     values = np.ravel(q[:, robot.revolute])[:LOOKED_AT]
     values = values[np.isfinite(values) & (values != 0.0)]

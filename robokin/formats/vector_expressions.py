@@ -7,7 +7,7 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.errors import ExpressionError, InputError, counted, did_you_mean, shown
 from robokin.formats.number_expressions import Scope, evaluate
-from robokin.model import Robot
+from robokin.model import Robot, Tree
 from robokin.model.joint_units import in_units, joint_factors
 from robokin.units import Units
 
@@ -59,7 +59,7 @@ def parse_numbers(text: str, option: str, angles: list[bool], units: Units, what
     return values
 
 
-def parse_configuration(text: str, robot: Robot, units: Units, option: str = "--q") -> Array:
+def parse_configuration(text: str, robot: Robot | Tree, units: Units, option: str = "--q") -> Array:
     """Joint values (n,) in the given units, from a vector or the name of a pose of the description."""
     name = text.strip()
     if name in robot.poses:

@@ -2,9 +2,10 @@
 
 from robokin.model.mechanism import Mechanism, MechanismJoint, Rounding, expect_mechanism
 from robokin.model.robot import Joint, JointType, Robot, expect_robot
+from robokin.model.tree import Tree, expect_tree
 from robokin.model.wheeled_base import Wheel, WheeledBase, expect_wheeled
 
 __all__ = [
-    "Joint", "JointType", "Mechanism", "MechanismJoint", "Robot", "Rounding", "Wheel", "WheeledBase",
-    "expect_mechanism", "expect_robot", "expect_wheeled",
+    "Joint", "JointType", "Mechanism", "MechanismJoint", "Robot", "Rounding", "Tree", "Wheel", "WheeledBase",
+    "expect_mechanism", "expect_robot", "expect_tree", "expect_wheeled",
 ]  # fmt: skip

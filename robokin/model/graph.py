@@ -22,7 +22,7 @@ from graphlib import CycleError, TopologicalSorter
 
 import numpy as np
 
-from robokin.arrays import Array, Index, read_only
+from robokin.arrays import Array, Flags, Index, read_only
 from robokin.brief import Brief
 from robokin.errors import InputError, did_you_mean, shown
 from robokin.model.topology import Topology, topology_of
@@ -102,6 +102,11 @@ class SerialChain(Brief):
     S: Array
     offsets: Array
     base: Array
+
+    @property
+    def turns(self) -> Flags:
+        """(n,) whether each joint turns; the others slide."""
+        return np.array([joint.type != "prismatic" for joint in self.joints], dtype=bool)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -191,11 +196,10 @@ class Graph(Brief):
             raise InputError(f"found the joint '{shown(name)}' of a coupling {found}{hint}")
         return names.index(name)
 
-    def chain(self, root: str, tip: str) -> SerialChain:
-        """The chain from a link to a tip, or to a link's frame, by their names.
+    def way(self, root: str, tip: str) -> tuple[tuple[int, ...], Array]:
+        """The numbers of the joints that lead from a link to a tip or to a link's frame, and the tool (4, 4) [m] there.
 
-        Raises InputError where no joints lead from one to the other, each from its parent to its child, or where one of
-        them has no axis.
+        Raises InputError where no joints lead from one to the other, each from its parent to its child.
         """
         tips = {name: (number, np.eye(4)) for number, name in enumerate(self.links)}
         tips |= {one.name: (one.link, one.tool) for one in self.tips}
@@ -204,14 +208,27 @@ class Graph(Brief):
                 hint = did_you_mean(name, known) or f", expected one of {', '.join([*known][:12])}"
                 raise InputError(f"found the unknown link '{shown(name)}'{hint}")
         first, (last, tool) = self.links.index(root), tips[tip]
-        way: list[int] = []
+        numbers: list[int] = []
         while last != first:
             number = int(self.topology.joint[last])
             if number < 0 or self.joints[number].child != last:
                 raise InputError(f"no joints lead from link {shown(root)} to {shown(tip)}, expected what stands on it")
-            way.insert(0, number)
+            numbers.insert(0, number)
             last = self.joints[number].parent
-        frame = self.base if first == self.root else np.eye(4)
+        return tuple(numbers), tool
+
+    def frame_of(self, link: str) -> Array:
+        """The frame (4, 4) [m] that chains from a link begin in: the world for the root, the link's own for another."""
+        return self.base if self.links.index(link) == self.root else np.eye(4)
+
+    def chain(self, root: str, tip: str) -> SerialChain:
+        """The chain from a link to a tip, or to a link's frame, by their names.
+
+        Raises InputError where no joints lead from one to the other, each from its parent to its child, or where one of
+        them has no axis.
+        """
+        way, tool = self.way(root, tip)
+        frame = self.frame_of(root)
         constants = [frame]
         for number in way:
             joint = self.joints[number]

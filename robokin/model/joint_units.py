@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.model import Robot
+from robokin.model import Robot, Tree
 from robokin.units import Units
 
 
-def joint_factors(robot: Robot, units: Units) -> Array:
+def joint_factors(robot: Robot | Tree, units: Units) -> Array:
     """(n,) SI in one unit of each joint's value [rad | m]."""
     return np.where(robot.revolute, units.radians, units.metres)
 

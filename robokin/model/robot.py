@@ -190,8 +190,7 @@ class Robot(Answer):
             raise InputError(
                 f"q: found an array of shape {q.shape}, expected (..., {self.n}): one value for each joint"
             )
-        low, high = tolerated(self.limits)
-        return np.asarray(np.all((q >= low) & (q <= high), axis=-1))
+        return within(self.limits, q)
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         """Copied and pickled by its fields: the read-only view of a mapping cannot be pickled."""
@@ -236,6 +235,12 @@ def _constants(row: Joint, convention: str) -> tuple[Array, Array]:
         return origin, np.eye(4)
     A = z_to(row.axis)
     return exact(origin @ A), invert(A)
+
+
+def within(limits: Array, q: Array) -> Flags:
+    """(...) whether each q: (..., n) [rad | m] respects the limits (n, 2), which are inclusive."""
+    low, high = tolerated(limits)
+    return np.asarray(np.all((q >= low) & (q <= high), axis=-1))
 
 
 def tolerated(limits: Array) -> tuple[Array, Array]:

@@ -11,21 +11,21 @@ from robokin.errors import DescriptionError, InputError, Note
 from robokin.formats.library import load_any
 from robokin.kinematics.structure import structure_of
 from robokin.mobility.count import grubler
-from robokin.model import Joint, Mechanism, Robot, WheeledBase
+from robokin.model import Joint, Mechanism, Robot, Tree, WheeledBase
 from robokin.model.joint_units import in_units, joint_factors
 from robokin.records.envelope import SCHEMA, envelope
 from robokin.records.pose_records import poses_in
 from robokin.units import Units
 
-KINDS = {Robot: "robot", Mechanism: "mechanism", WheeledBase: "wheeled"}
+KINDS = {Robot: "robot", Mechanism: "mechanism", WheeledBase: "wheeled", Tree: "tree"}
 """What the key `kind` says of that which a description describes."""
 
 ZERO_DECIMALS = 9
 """Decimals of the place at zero: 1e-9 m and less is far below what a table states, and far above rounding."""
 
 
-def kind_of(entry: Robot | Mechanism | WheeledBase) -> str:
-    """`robot`, `mechanism` or `wheeled`."""
+def kind_of(entry: Robot | Mechanism | WheeledBase | Tree) -> str:
+    """`robot`, `mechanism`, `wheeled` or `tree`."""
     return KINDS[type(entry)]
 
 
@@ -43,7 +43,7 @@ def zero_record(robot: Robot, units: Units) -> dict[str, Any]:
     return {"position": position, "z": z, "z_along": along[0] if along else None}
 
 
-Verdict = Robot | Mechanism | WheeledBase | InputError
+Verdict = Robot | Mechanism | WheeledBase | Tree | InputError
 """What a description describes, or what is wrong with it."""
 
 

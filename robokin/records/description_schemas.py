@@ -23,7 +23,7 @@ from robokin.records.schema_words import (
     word,
 )
 
-KIND = word("What it is.", "robot", "mechanism", "wheeled")
+KIND = word("What it is.", "robot", "mechanism", "wheeled", "tree")
 SPACE = word("Where it lives.", "planar", "spherical", "spatial")
 PARAMETERS = mapping(number("Its value, in the description's units."), "The description's parameters, by name.")
 

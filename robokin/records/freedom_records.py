@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robokin.formats.joint_counts import LETTERS
-from robokin.model import Mechanism, Robot, WheeledBase
+from robokin.model import Mechanism, Robot, Tree, WheeledBase
 from robokin.records.count_records import count_record, type_record
 from robokin.records.envelope import envelope
 from robokin.units import Units
@@ -152,6 +152,40 @@ def robot_record(robot: Robot, units: Units) -> dict[str, Any]:
         "total": m,
         "redundancy": spare,
         "compared": "joints",
+    }
+
+
+def tree_record(tree: Tree, units: Units) -> dict[str, Any]:
+    """A tree's count, which is true but for joints that follow others; what moves each tip."""
+    moving = [tree.graph.joints[number] for number in tree.graph.moving]
+    counts = {kind: sum(joint.type == kind for joint in moving) for kind in dict.fromkeys(j.type for j in moving)}
+    types = [type_record(str(kind), NAMES.get(str(kind), "G"), count, 1, 6) for kind, count in counts.items()]
+    following = len(moving) - tree.n
+    note = None
+    if following:
+        follow = "joint follows another" if following == 1 else "joints follow others"
+        note = f"{following} {follow}: of {len(moving)} freedoms {tree.n} are left"
+    graph = tree.graph
+    variables = [graph.chain(graph.links[graph.root], tip).variables.tolist() for tip in tree.tips]
+    shared = {tip: sum(bool({*own} & {*other}) for other in variables) > 1
+              for tip, own in zip(tree.tips, variables, strict=True)}  # fmt: skip
+    return count_record(tree.name, "spatial", len(moving) + 1, types) | {
+        "mobility": tree.n,
+        "mobility_basis": "geometry",
+        "overconstraints": 0,
+        "idle": 0,
+        "controllable": tree.n,
+        "holonomic": True,
+        "note": note,
+        "kind": "tree",
+        "id": tree.id,
+        "units": units.as_record(),
+        "verdict": "coupled" if following else "right",
+        "following": following,
+        "tips": [
+            {"name": tip, "joints": len(own), "alone": not shared[tip]}
+            for tip, own in zip(tree.tips, variables, strict=True)
+        ],
     }
 
 

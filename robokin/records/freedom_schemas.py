@@ -94,10 +94,31 @@ def dof() -> Schema:
             "compared": {"const": "joints", "description": "What is compared with `total`."},
         },
     )
+    tip = record(
+        "A tip.",
+        {
+            "name": text("Its name."),
+            "joints": whole("The joint variables that move it.", 0),
+            "alone": flag("Whether none of them moves another tip."),
+        },
+    )
+    tree = record(
+        "A tree of links.",
+        {
+            **_count(True),
+            **LOOPS,
+            "kind": {"const": "tree", "description": "What it is."},
+            "units": UNITS,
+            "verdict": word("Whether the count is the mobility, or joints that follow others make it less.",
+                            "right", "coupled"),
+            "following": whole("Joints that follow others, without a freedom of their own.", 0),
+            "tips": items(tip, "What moves each tip."),
+        },
+    )  # fmt: skip
     about = "Degrees of freedom; with --trace, configurations along a motion (a line of JSON lines holds one)."
     motion, configuration = _motion()
     return documents(
-        "dof", about, [], count=count, mechanism=_mechanism(), robot=robot, wheeled=_base(), motion=motion,
+        "dof", about, [], count=count, mechanism=_mechanism(), robot=robot, tree=tree, wheeled=_base(), motion=motion,
         configuration=configuration,
     )  # fmt: skip
 

@@ -9,7 +9,9 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.kinematics.forward import forward_kinematics, row_frames
-from robokin.model import Robot
+from robokin.kinematics.tips import tip_poses
+from robokin.model import Joint, Robot, Tree
+from robokin.model.graph import GraphJoint
 from robokin.model.joint_units import joint_factors
 from robokin.number_text import show_range
 from robokin.records.pose_records import PoseBlock, poses_in
@@ -19,8 +21,8 @@ from robokin.units import Units
 class PoseMaker:
     """Turns blocks of configurations into blocks of poses, and counts what is outside the limits."""
 
-    def __init__(self, robot: Robot, units: Units, frames: bool) -> None:
-        """`frames` asks for the frame after every row of the table, too."""
+    def __init__(self, robot: Robot | Tree, units: Units, frames: bool) -> None:
+        """`frames` asks for the frame after every row of the table, too; a tree has the poses of its tips."""
         self.robot, self.units, self.frames = robot, units, frames
         self.factors = joint_factors(robot, units)
         self.count = 0
@@ -34,8 +36,10 @@ class PoseMaker:
             within = self.robot.within_limits(si)
             # What is too large is found below, and said in a sentence.
             with np.errstate(over="ignore", invalid="ignore"):
-                T = poses_in(forward_kinematics(self.robot, si), self.units)
-                frames = poses_in(row_frames(self.robot, si), self.units) if self.frames else None
+                T = poses_in(self._poses(si), self.units)
+                frames = None
+                if self.frames and isinstance(self.robot, Robot):
+                    frames = poses_in(row_frames(self.robot, si), self.units)
             for result in (T, frames):
                 # Rotations are finite for finite angles; only positions can grow too large.
                 if result is not None and not np.isfinite(result[..., :3, 3]).all():
@@ -45,6 +49,12 @@ class PoseMaker:
             yield PoseBlock(self.count + 1, q + 0.0, within, T, frames)
             first = self.count + int(within.argmin()) + 1
             self.add(len(q), len(q) - int(within.sum()), first)
+
+    def _poses(self, q: Array) -> Array:
+        """The poses (m, 4, 4), of a tree (m, tips, 4, 4), at q: (m, n) [rad | m]."""
+        if isinstance(self.robot, Tree):
+            return tip_poses(self.robot, q)
+        return forward_kinematics(self.robot, q)
 
     def add(self, count: int, outside: int, first_outside: int) -> None:
         """Count a block of configurations, and those that are outside the limits; the number of the first of these."""
@@ -63,11 +73,11 @@ class PoseMaker:
         """A sentence for each joint value of a few configurations (m, n) that is outside its limits."""
         for number, values in enumerate(q, start=1):
             which = f"configuration {number}: " if len(q) > 1 else ""
-            for i, joint in enumerate(self.robot.joints):
+            for i, joint in enumerate[Joint | GraphJoint](self.robot.joints):
                 alone = np.clip(np.zeros(self.robot.n), *self.robot.limits.T)
                 alone[i] = values[i] * self.factors[i]
                 if not self.robot.within_limits(alone):
-                    unit = self.units.angle if joint.type == "revolute" else self.units.length
+                    unit = self.units.angle if self.robot.revolute[i] else self.units.length
                     name = "" if joint.name == str(i + 1) else f" ({joint.name})"
                     limits = show_range(*(limit / self.factors[i] for limit in joint.limits))
                     yield f"{which}joint {i + 1}{name} = {values[i]:.12g} {unit} is outside its limits {limits}"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from robokin.arrays import Array, Flags
-from robokin.model import Robot
+from robokin.model import Robot, Tree
 from robokin.records.envelope import envelope
 from robokin.spatial import axis_angle_from_rotation
 from robokin.tables.orientations import orientation
@@ -67,6 +67,16 @@ def frame_record(T: Array, units: Units, kind: str | None = None) -> dict[str, A
         "rotvec": pose["rotvec"],
     }
     return record | {key: value for key, value in pose.items() if key not in record}
+
+
+def tip_records(tree: Tree, units: Units, poses: PoseBlock, more: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """The answers of `fk` about a tree's tips for a block of configurations; `more` orientations than all have."""
+    head = envelope("robot", tree.id, units)
+    count = len(tree.tips)
+    found = pose_records(poses.T.reshape(-1, 4, 4), units, more)
+    for i, (q, within) in enumerate(zip(poses.q.tolist(), poses.within.tolist(), strict=True)):
+        tips = dict(zip(tree.tips, found[i * count : (i + 1) * count], strict=True))
+        yield {**head, "q": q, "within_limits": within, "tips": tips}
 
 
 def configuration_records(

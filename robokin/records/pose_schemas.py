@@ -56,6 +56,15 @@ def fk() -> Schema:
         {**head("robot", ROBOT), "q": Q, "within_limits": flag("Whether all joints are within limits."), "pose": POSE},
         {"frames": FRAMES},
     )
+    tips = record(
+        "The poses of a tree's tips at joint values.",
+        {
+            **head("robot", ROBOT),
+            "q": Q,
+            "within_limits": flag("Whether all joints are within limits."),
+            "tips": mapping(POSE, "The pose of each tip, by its name."),
+        },
+    )
     symbolic = record(
         "Forward kinematics in symbols (--symbolic).",
         {
@@ -66,7 +75,14 @@ def fk() -> Schema:
         },
         {"frames": NAMED_SYMBOLS},
     )
-    return documents("fk", "Poses, or forward kinematics in symbols.", ["pose"], pose=pose, symbolic=symbolic)
+    return documents(
+        "fk",
+        "Poses, or forward kinematics in symbols.",
+        ["pose", "tips"],
+        pose=pose,
+        tips=tips,
+        symbolic=symbolic,
+    )
 
 
 def frame() -> Schema:

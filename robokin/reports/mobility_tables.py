@@ -41,9 +41,25 @@ def mobility_table(record: dict[str, Any]) -> bytes:
                 parts += ["found by search: there may be more ways to put it together"]
     elif record["kind"] == "robot":
         parts += ["", pairs(_robot_entries(record))]
+    elif record["kind"] == "tree":
+        parts += ["", pairs(_tree_entries(record))]
     elif record["note"]:
         parts += ["", pairs([("note", record["note"])])]
     return render(*parts)
+
+
+def _tree_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
+    entries = [("mobility", f"{record['mobility']}  (a tree has no loops)")]
+    if record["note"]:
+        entries += [("note", record["note"])]
+    for place, tip in enumerate(record["tips"]):
+        shared = "" if tip["alone"] else ", some of which move others too"
+        entries.append(("" if place else "tips", f"{tip['name']}: {_joint_count(tip['joints'])}{shared}"))
+    return entries
+
+
+def _joint_count(count: int) -> str:
+    return f"{count} joint variable{'' if count == 1 else 's'}"
 
 
 def _joints(record: dict[str, Any]) -> Any:

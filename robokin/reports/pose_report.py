@@ -47,6 +47,7 @@ class PoseReport(SharedStream):
     @property
     def robot(self) -> Robot:
         """The robot that is asked about."""
+        assert isinstance(self.maker.robot, Robot)
         return self.maker.robot
 
     @property

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from robokin.errors import shown
-from robokin.model import Robot
+from robokin.model import Robot, Tree
 from robokin.tables.headings import MAX_NAMES, FoundColumns, Way, find, refused
 from robokin.tables.wanted_columns import Wanted
 from robokin.units import Units
@@ -19,7 +19,7 @@ class JointColumns(Wanted):
 
     key = "q"
 
-    def __init__(self, robot: Robot, units: Units) -> None:
+    def __init__(self, robot: Robot | Tree, units: Units) -> None:
         self.robot, self.units = robot, units
         self.what = f"one for each joint of {robot.name} ({robot.types})"
         kinds = "".join("a" if turns else "l" for turns in robot.revolute)

@@ -22,6 +22,7 @@ COMMANDS = [
     ["show", "puma560"], ["show", "puma560-craig"], ["show", "scara-frames"], ["show", "four-bar"], ["show", "car"],
     ["show", "planetary"], ["show", "omni-three"],
     ["fk", "puma560", "--q", "home"], ["fk", "puma560", "--q", "home", "--frames", "--as", "euler"],
+    ["fk", "human-hand", "--q", "fist"], ["dof", "human-hand"],
     ["fk", "planar2r", "--q", "1,2", "--q", "3,4"], ["fk", "anthropomorphic", "--symbolic"],
     ["fk", "anthropomorphic", "--symbolic", "--frames", "--numbers"], ["fk", "puma560", "--q", "0,0,0,0,0,999"],
     ["fk", "scara", "--q", "0,0,0,0", "--length", "in", "--angle", "rad", "--as", "matrix"],

@@ -13,7 +13,7 @@ from sweeps import sweep
 import robokin
 from robokin.formats import library_names, load_any
 from robokin.mobility.verdict import mobility_of
-from robokin.model import Mechanism, Robot, WheeledBase
+from robokin.model import Mechanism, Robot, Tree, WheeledBase
 
 from .conftest import refused
 
@@ -535,4 +535,4 @@ def test_the_same_from_python(call):
         record[key] for key in ("grubler", "mobility", "verdict", "note")
     )
     assert robokin.mobility_of is mobility_of
-    assert {type(load_any(name)) for name in library_names()} == {Robot, Mechanism, WheeledBase}
+    assert {type(load_any(name)) for name in library_names()} == {Robot, Tree, Mechanism, WheeledBase}

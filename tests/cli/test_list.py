@@ -27,9 +27,9 @@ def test_what_an_entry_says(call):
     assert (entries["four-bar"]["kind"], entries["four-bar"]["joints"]) == ("mechanism", "RRRR")
     assert (entries["scara"]["joints"], entries["scara"]["dof"]) == ("RRPR", 4)
     for record in entries.values():
-        assert record["kind"] in ("robot", "mechanism", "wheeled")
+        assert record["kind"] in ("robot", "tree", "mechanism", "wheeled")
         assert record["source"]
-        if record["kind"] == "robot":
+        if record["kind"] in ("robot", "tree"):
             assert record["dof"] == len(record["joints"])
         elif record["dof"] is not None:
             assert record["dof"] == load_any(record["id"]).expected["mobility"]

@@ -13,14 +13,14 @@ import robokin
 from robokin.errors import InputError, RobokinError
 from robokin.formats import library_names, load, load_any
 from robokin.formats.library import KINDS, is_path, library_files, library_folder
-from robokin.model import Mechanism, Robot, WheeledBase
+from robokin.model import Mechanism, Robot, Tree, WheeledBase
 from robokin.units import METRES, RADIANS
 
 
 @pytest.mark.parametrize("name", library_names())
 def test_every_entry_of_the_library_loads(name):
     entry = load_any(name)
-    assert isinstance(entry, Robot | Mechanism | WheeledBase)
+    assert isinstance(entry, Robot | Tree | Mechanism | WheeledBase)
     assert entry.id == name
     assert entry.source
     assert entry.units.length in METRES
@@ -59,7 +59,7 @@ def test_a_name_stands_once_and_every_file_in_the_folder_of_its_kind():
     assert len(set(library_names())) == len(library_names())
     assert sorted(library_folder().rglob("*.yaml")) == sorted(library_files())
     assert {path.name for path in library_folder().iterdir() if path.is_dir()} == set(KINDS)
-    kinds = {"arms": Robot, "hands": Robot, "mechanisms": Mechanism, "bases": WheeledBase}
+    kinds = {"arms": Robot, "hands": Robot | Tree, "mechanisms": Mechanism, "bases": WheeledBase}
     for path in library_files():
         assert isinstance(load_any(path.stem), kinds[path.parent.name])
 

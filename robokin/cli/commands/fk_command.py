@@ -46,7 +46,7 @@ def command(
     output: ArrayOutputOptions,
     description: DescriptionOptions,
 ) -> int:
-    """Forward kinematics: the pose of the end effector at given joint values.
+    """Forward kinematics: the pose of the end effector, or of a tree's tips, at given joint values.
 
     Angles and lengths are in the description's units unless --angle and --length say otherwise.
 
@@ -56,11 +56,15 @@ def command(
         robokin fk puma560 --q home --frames
         robokin fk puma560 --input joints.csv --output poses.csv
         shuf -n 3 joints.csv | robokin fk puma560 --q - -f csv
+        robokin fk human-hand --q pinch
+        robokin fk human-hand --tip index --q 0,45,30,20
         robokin fk anthropomorphic --symbolic
     """
     from robokin.cli.configurations import configurations
+    from robokin.model import Tree
     from robokin.records.pose_blocks import PoseMaker
     from robokin.reports.pose_report import RECORD_KEYS, PoseReport, csv_columns
+    from robokin.reports.tip_report import TIP_KEYS, TipReport, tip_columns
     from robokin.tables.carried import Carried
     from robokin.tables.sink import sink
 
@@ -79,21 +83,32 @@ def command(
         return 0
     kind = output.kind
     orientation, most = orientation_kind(as_), whole_cores(cores)
-    model, units = description.robot(robot)
+    subject, units = description.robot_or_tree(robot)
+    tree: Tree | None = None
+    keys: tuple[str, ...] = RECORD_KEYS
+    if isinstance(subject, Tree):
+        tree, keys, columns = subject, TIP_KEYS, tip_columns(subject, orientation)
+    else:
+        columns = csv_columns(subject, orientation)
     carried = Carried(
-        csv_columns(model, orientation) if kind == "csv" else RECORD_KEYS,
+        columns if kind == "csv" else keys,
         say,
         wanted=not drop and kind in ("csv", "json", "jsonl"),
     )
-    blocks, streamed, alone = configurations(model, units, q, input, carried, still=True)
+    blocks, streamed, alone = configurations(subject, units, q, input, carried, still=True)
+    if frames and tree:
+        raise InputError(f"--frames: {subject.name} is a tree, expected --tip with one of {tree.listed_tips()}")
     if frames and kind == "csv":
         raise InputError("--frames: a row of CSV has no room for frames, expected the format table, json, jsonl or npy")
-    maker = PoseMaker(model, units, frames)
+    maker = PoseMaker(subject, units, frames)
     if not streamed:
         for note in (note for given in blocks for note in maker.outside_notes(given)):
             say(note)
     used = cores_worth(most, "-" if input is None else input, MANY) if streamed else 1
-    PoseReport(maker, orientation, alone, carried, cores=used).send(output.file, kind, blocks)
+    if tree:
+        TipReport(tree, maker, orientation, alone, carried).send(output.file, kind, blocks)
+    else:
+        PoseReport(maker, orientation, alone, carried, cores=used).send(output.file, kind, blocks)
     if streamed and (summary := maker.outside_summary()):
         say(summary)
     return 0

@@ -19,7 +19,7 @@ from typing import IO
 from robokin.errors import InputError, or_list, shown
 from robokin.formats.library import is_path, load_any
 from robokin.formats.read import MAX_BYTES, read_bytes
-from robokin.model import Mechanism, Robot, WheeledBase
+from robokin.model import Mechanism, Robot, Tree, WheeledBase
 
 ENDINGS = (".yaml", ".yml")
 """Names of descriptions in a folder; others there are no answers."""
@@ -46,9 +46,11 @@ class Submission:
     def read(self) -> Robot | Mechanism | WheeledBase:
         """What it describes. Raises InputError."""
         if self.path is None:
-            return load_any(self.place)
-        with open_plain_file(self.path, self.follow) as stream:
-            return read_bytes(stream.read(MAX_BYTES + 1), self.path)
+            described = load_any(self.place)
+        else:
+            with open_plain_file(self.path, self.follow) as stream:
+                described = read_bytes(stream.read(MAX_BYTES + 1), self.path)
+        return described.robot() if isinstance(described, Tree) else described
 
 
 def submissions(places: Sequence[str], follow: bool) -> list[Submission]:
