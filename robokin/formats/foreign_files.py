@@ -51,4 +51,4 @@ def read_foreign(path: Path, overrides: MappingType[str, str], mode: int | None,
         return read_sdf(data, place, exact=part.exact, id=path.stem)
     from robokin.formats.mjcf import read_mjcf
 
-    return read_mjcf(data, place, exact=part.exact, id=path.stem)
+    return read_mjcf(path, place, exact=part.exact, id=path.stem)  # what it includes is beside it
