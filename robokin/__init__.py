@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from robokin.inverse.joint_paths import follow_line as follow_line
     from robokin.inverse.joint_paths import interpolate_joints as interpolate_joints
     from robokin.inverse.solve import solve_ik as solve_ik
+    from robokin.kinematics.dh_table import to_convention as to_convention
     from robokin.kinematics.forward import forward_kinematics as forward_kinematics
     from robokin.kinematics.forward import link_frames as link_frames
     from robokin.kinematics.jacobian import jacobian as jacobian
@@ -76,6 +77,7 @@ _HOMES = {
     "DescriptionError": "robokin.errors",
     "forward_kinematics": "robokin.kinematics.forward",
     "link_frames": "robokin.kinematics.forward",
+    "to_convention": "robokin.kinematics.dh_table",
     "solve_ik": "robokin.inverse.solve",
     "jacobian": "robokin.kinematics.jacobian",
     "tip_poses": "robokin.kinematics.tips",

@@ -20,7 +20,7 @@ from robokin.arrays import Array
 from robokin.brief import Answer
 from robokin.errors import InputError
 from robokin.expected import described, expect_choice, expect_finite, expect_flag, expect_kind
-from robokin.model import Mechanism, Robot, WheeledBase, expect_robot
+from robokin.model import Mechanism, Robot, Tree, WheeledBase, expect_robot
 from robokin.units import Units
 
 if TYPE_CHECKING:
@@ -35,7 +35,8 @@ ORIENTATIONS = ("rpy", "quaternion", "euler", "matrix")
 def document_of(value: Answer, units: Units | None = None) -> Any:
     """The document of an answer; a list of them for an answer to several questions.
 
-    Of a robot, a mechanism or a wheeled base that of `robokin show`. Raises InputError for what is no answer.
+    Of a robot, a mechanism, a wheeled base or a tree that of `robokin show`.
+    Raises InputError for what is no answer.
     """
     from robokin.inverse.joint_paths import Path
     from robokin.inverse.solutions import BatchResult, Result
@@ -46,7 +47,7 @@ def document_of(value: Answer, units: Units | None = None) -> Any:
     from robokin.workspace.workspace_result import Workspace
 
     own = None if units is None else expect_units(units)
-    if isinstance(value, Robot | Mechanism | WheeledBase):
+    if isinstance(value, Robot | Mechanism | WheeledBase | Tree):
         return show(value, own)
     if isinstance(value, Symbols):
         return value.record(own)
@@ -78,11 +79,11 @@ def expect_units(value: object) -> Units:
     return cast(Units, expect_kind(value, Units, "units", "units, such as robokin.Units('mm', 'deg')"))
 
 
-def show(entry: Robot | Mechanism | WheeledBase, units: Units | None = None) -> Document:
-    """What `robokin show` says of a robot, a mechanism or a wheeled base. Raises InputTypeError."""
+def show(entry: Robot | Mechanism | WheeledBase | Tree, units: Units | None = None) -> Document:
+    """What `robokin show` says of a robot, a mechanism, a wheeled base or a tree. Raises InputTypeError."""
     from robokin.records.description_records import described_record
 
-    if not isinstance(entry, Robot | Mechanism | WheeledBase):
+    if not isinstance(entry, Robot | Mechanism | WheeledBase | Tree):
         expect_kind(
             entry, Robot, "entry", "a robot, a mechanism or a wheeled base, as robokin.load(name_or_path) gives"
         )
@@ -169,8 +170,12 @@ def singular(robot: Robot, task: TaskName | None = None, units: Units | None = N
     return singular_record(robot, own, task, singular_configurations(robot, task))
 
 
-def dof(entry: Robot | Mechanism | WheeledBase, units: Units | None = None) -> Document:
-    """What `robokin dof` says of a robot, a mechanism or a wheeled base. Raises InputTypeError."""
+def dof(entry: Robot | Mechanism | WheeledBase | Tree, units: Units | None = None) -> Document:
+    """What `robokin dof` says of a robot, a mechanism, a wheeled base or a tree. Raises InputTypeError."""
+    if isinstance(entry, Tree):
+        from robokin.records.freedom_records import tree_record
+
+        return tree_record(entry, entry.units if units is None else expect_units(units))
     if isinstance(entry, Robot):
         from robokin.records.freedom_records import robot_record
 

@@ -28,6 +28,9 @@ STDIN = "standard input"
 MAX_LINKS = 40
 """Links that are followed one after the other, as Linux does."""
 
+TAKEN = 1 << 16
+"""Bytes taken out of a pipe at once, which is what it holds, and more than the buffer of a stream."""
+
 CLOSED: set[int] = set()
 """Those of the descriptors 0, 1 and 2 that were closed when the program started."""
 
@@ -66,13 +69,50 @@ def read_up_to(stream: IO[bytes], name: str, most: int, expected: str) -> bytes:
     try:
         while left:
             wait_for(stream)
-            if not (part := stream.read1(left)):  # type: ignore[attr-defined]
+            if not (part := stream.read1(min(left, 1 << 20))):  # type: ignore[attr-defined]
                 break
             parts.append(part)
             left -= len(part)
     except OSError as error:
         raise InputError(f"{name}: {unreadable(error)}, expected {expected}") from None
     return b"".join(parts)
+
+
+class HeededStream:
+    """A stream that gives what it has, and waits for more as `wait_for` does; for pipes, which have no way back."""
+
+    def __init__(self, stream: Any) -> None:
+        """The stream is a buffered one; what is in its buffer is given first."""
+        self.stream = stream
+        self.kept = b""
+        """What was taken out of the stream and is not read yet."""
+        self.fresh = True
+        """Whether the stream's own buffer may hold something, so that there is nothing to wait for."""
+
+    def seekable(self) -> bool:
+        """It never is."""
+        return False
+
+    def read(self, most: int) -> bytes:
+        """The next bytes, up to so many of them; none at the end."""
+        if not self.kept and most:
+            self._take(most)
+        part, self.kept = self.kept[:most], self.kept[most:]
+        return part
+
+    def peek(self, count: int) -> bytes:
+        """The next bytes, which stay to be read: so many of them, or fewer before the end."""
+        while len(self.kept) < count and self._take(count):
+            pass
+        return self.kept
+
+    def _take(self, most: int) -> bool:
+        """Take more bytes out of the stream; whether there were any."""
+        if not self.fresh:
+            wait_for(self.stream)
+        more = self.stream.read1(max(most, TAKEN))  # all of its buffer, which would be in the way of the next wait
+        self.kept, self.fresh = self.kept + more, False
+        return bool(more)
 
 
 def wait_for(stream: Any) -> None:

@@ -19,7 +19,7 @@ PAGE = Path(__file__).parent.parent / "docs" / "api.md"
 
 GROUPS = {
     "Descriptions": ("load", "load_tree", "load_mechanism", "load_wheeled", "library_names", "transform", "Units"),
-    "Models": ("Robot", "Tree", "Mechanism", "WheeledBase"),
+    "Models": ("Robot", "Tree", "Mechanism", "WheeledBase", "to_convention"),
     "Kinematics": (
         "forward_kinematics", "tip_poses", "link_frames", "jacobian", "differential_kinematics",
         "singular_configurations", "symbols",

@@ -85,6 +85,10 @@ def test_descriptions_in_the_text_can_be_read(page):
     "fields",
     [
         "ROBOT",
+        "SCREWS",
+        "SCREW_ROW",
+        "ETS",
+        "OPW",
         "UNITS",
         "DH_ROW",
         "FRAME_ROW",

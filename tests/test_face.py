@@ -26,6 +26,7 @@ from robokin import InputError, RobokinError, Units
 PUMA = robokin.load("puma560")
 PLANAR = robokin.load("planar2r")
 FOUR_BAR = robokin.load_mechanism("four-bar")
+HAND = robokin.load_tree("human-hand")
 CAR = robokin.load_wheeled("car")
 Q = np.radians([10.0, -50.0, 100.0, 20.0, 30.0, 40.0])
 T = robokin.forward_kinematics(PUMA, Q)
@@ -59,7 +60,7 @@ def test_a_batch_gives_the_answer_of_each_target():
 
 def public_values():
     result = robokin.solve_ik(PUMA, robokin.forward_kinematics(PUMA, [0.1, -0.8, 1.7, 0, 0, 0]))
-    yield from (PUMA, PUMA.rows[0], FOUR_BAR, FOUR_BAR.joints[0], CAR, CAR.wheels[0], PUMA.units)
+    yield from (PUMA, PUMA.rows[0], FOUR_BAR, FOUR_BAR.joints[0], CAR, CAR.wheels[0], PUMA.units, HAND)
     yield from (result, result[0], *result.families, *(arc for family in result.families for arc in family.arcs))
     yield from (result.question, robokin.solve_ik(PUMA, [T, T]), robokin.load("human-body"))
     yield from robokin.singular_configurations(PLANAR)
@@ -97,7 +98,9 @@ def test_what_results_hold_is_brief_too():
         walk(robokin.mobility_of(robokin.load_mechanism(name)))
 
 
-@pytest.mark.parametrize("value", [PUMA, FOUR_BAR, CAR, robokin.solve_ik(PUMA, T)[0], robokin.default_tolerance(PUMA)])
+@pytest.mark.parametrize(
+    "value", [PUMA, FOUR_BAR, CAR, HAND, robokin.solve_ik(PUMA, T)[0], robokin.default_tolerance(PUMA)]
+)
 def test_values_are_frozen(value):
     with pytest.raises(AttributeError):
         value.name = "another"
@@ -238,7 +241,9 @@ WRONG = [
     np.full(6, 1e308), Units("mm", "deg"), robokin.solve_ik(PLANAR, PLANAR_T), "pose", "Trans(1", "svg", (1, 2),
 ]  # fmt: skip
 RIGHT = {
-    "load": {"name_or_path": "puma560"},
+    "load": {"name_or_path": "puma560", "tip": "tool", "root": None, "exact": False},
+    "load_tree": {"name_or_path": "human-hand", "exact": False},
+    "tip_poses": {"tree": HAND, "q": np.zeros(21)},
     "load_mechanism": {"name_or_path": "four-bar"},
     "load_wheeled": {"name_or_path": "car"},
     "forward_kinematics": {"robot": PUMA, "q": Q, "cores": 1},
@@ -252,6 +257,7 @@ RIGHT = {
     },
     "follow_line": {"robot": PLANAR, "start": [0.3, 0.4], "T": PLANAR_T, "steps": 2, "limits": True, "task": None},
     "interpolate_joints": {"robot": PLANAR, "start": [0.3, 0.4], "end": [0.5, 0.6], "steps": 2, "limits": True},
+    "to_convention": {"robot": PUMA, "convention": "modified"},
     "mobility_of": {"mechanism": FOUR_BAR, "between": ("rocker", "ground"), "seed": 0},
     "manoeuvrability_of": {"base": CAR},
     "analyse_workspace": {

@@ -18,6 +18,7 @@ from robokin.errors import InputError, shown
 COMMANDS = {
     "list": "The library of robots and mechanisms.",
     "show": "A robot's table, its class, its wrist and its freedoms.",
+    "convert": "A robot in another convention or format: YAML, URDF, tables.",
     "validate": "Check descriptions.",
     "schema": "JSON Schemas of descriptions and of each command's documents.",
     "fk": "Forward kinematics: the pose of the end effector.",

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import contextlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.cli.arguments import parse_configuration
+from robokin.cli.arguments import parse_configuration, split_vector
 from robokin.cli.statuses import say
 from robokin.errors import InputError
 from robokin.formats.typed_angles import unit_of_values
@@ -41,10 +42,36 @@ def configurations(
         )
     if q and "-" in q:
         raise InputError("--q - stands for all configurations on standard input, expected no other --q beside it")
-    given = np.array([parse_configuration(text, robot, units) for text in q or [""]])
-    if not all(text.strip() in robot.poses for text in q or [""]):
-        say_unit(robot, units, given)
+    given = typed_configurations(q or [""], robot, units)
     return [given], False, len(given) == 1
+
+
+def typed_configurations(texts: Sequence[str], robot: Robot | Tree, units: Units, option: str = "--q") -> Array:
+    """Joint values (m, n) in the units that an option says, with a note where they look like the other angle unit.
+
+    Raises InputError that names the option.
+    """
+    given = np.array([parse_configuration(text, robot, units, option) for text in texts]).reshape(len(texts), robot.n)
+    note_units(texts, robot, units, given, option)
+    return given
+
+
+def note_units(texts: Sequence[str], robot: Robot | Tree, units: Units, given: Array, option: str = "--q") -> None:
+    """The note on joint values (m, n) in the units, as texts of an option say them; those of named poses are sure."""
+    typed = [i for i, text in enumerate(texts) if text.strip() not in robot.poses]
+    say_unit(robot, units, given[typed], "" if option == "--q" else f"{option}: ")
+
+
+def note_answered_units(texts: Sequence[str], robot: Robot | Tree, units: Units) -> None:
+    """The same of answers, which may hold anything: those that are no plain numbers say nothing."""
+    told: list[str] = []
+    rows: list[list[float]] = []
+    for text in texts:
+        with contextlib.suppress(ValueError):
+            row = [float(part) for part in split_vector(text)]
+            if len(row) == robot.n:
+                told, rows = [*told, text], [*rows, row]
+    note_units(told, robot, units, np.array(rows).reshape(len(rows), robot.n))
 
 
 def read_configurations(source: str, robot: Robot | Tree, units: Units, carried: Carried) -> Iterator[Array]:
@@ -59,6 +86,13 @@ def read_configurations(source: str, robot: Robot | Tree, units: Units, carried:
         if i == 0:
             say_unit(robot, units, block, "standard input: " if source == "-" else f"{source}: ")
         yield block
+
+
+def note_held_units(held: Mapping[int, float], robot: Robot | Tree, units: Units) -> None:
+    """The same of joints, from 0, that are held at values in the units."""
+    values = np.zeros((1, robot.n))
+    values[0, [*held]] = [*held.values()]
+    say_unit(robot, units, values, "--hold: ")
 
 
 def say_unit(robot: Robot | Tree, units: Units, q: Array, where: str = "") -> None:

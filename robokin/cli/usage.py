@@ -17,9 +17,10 @@ COMMAND_WORDS = {
     "workspace": "reach reachable volume reachability",
     "dof": "mobility freedom freedoms grubler gruebler grübler kutzbach mechanism",
     "check": "grade mark test compare score",
-    "frame": "transform transformation rotation rot matrix convert",
+    "frame": "transform transformation rotation rot matrix",
     "list": "ls robots library search find",
     "show": "info describe print table dh cat",
+    "convert": "export translate write save urdf latex markdown",
     "validate": "lint verify valid",
     "schema": "format",
 }

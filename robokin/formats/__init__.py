@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robokin.errors import InputError, InputTypeError, shown
-from robokin.expected import described
+from robokin.expected import described, expect_flag
 from robokin.formats.library import library_names, load_any
 
 if TYPE_CHECKING:
@@ -58,7 +58,10 @@ def load(
     from robokin.formats.part import Part
     from robokin.model import Robot, Tree
 
-    loaded = _loaded(name_or_path, parameters, Part(tip, root, exact))
+    for argument, name in (("tip", tip), ("root", root)):
+        if not isinstance(name, str | None):
+            raise InputTypeError(f"{argument}: found {described(name)}, expected the name of a tip or a link")
+    loaded = _loaded(name_or_path, parameters, Part(tip, root, expect_flag(exact, "exact")))
     if isinstance(loaded, Tree):
         return loaded.robot()
     if not isinstance(loaded, Robot):
@@ -75,7 +78,7 @@ def load_tree(name_or_path: str | Path, *, exact: bool = False, **parameters: fl
     from robokin.formats.part import Part
     from robokin.model import Tree
 
-    loaded = _loaded(name_or_path, parameters, Part(exact=exact, whole=True))
+    loaded = _loaded(name_or_path, parameters, Part(exact=expect_flag(exact, "exact"), whole=True))
     if not isinstance(loaded, Tree):
         raise InputError(f"{name_or_path} is a {_kind(loaded)}, expected a tree or a robot")
     return loaded

@@ -17,6 +17,9 @@ MAX_FOREIGN_BYTES = 16 << 20
 FIRST_TAG = re.compile(rb"<([A-Za-z_][\w.-]*)")
 """The root's tag, where no comment stands before it."""
 
+MACROS = re.compile(rb"<xacro:|[$][{(]")
+"""What is left for xacro to do in a file, whatever it is called."""
+
 PROLOGUE = re.compile(rb"<!--.*?-->|<[?!][^>]*>", re.DOTALL)
 
 
@@ -42,6 +45,10 @@ def read_foreign(path: Path, overrides: MappingType[str, str], mode: int | None,
         found = FIRST_TAG.search(PROLOGUE.sub(b"", data[:65536]))
         ending = {b"robot": ".urdf", b"sdf": ".sdf"}.get(found[1] if found else b"", ".mjcf")
     if ending == ".urdf":
+        if MACROS.search(data):
+            from robokin.formats.xacro import read_xacro
+
+            return read_xacro(path, packages=part.packages, exact=part.exact)
         from robokin.formats.urdf import read_urdf
 
         return read_urdf(data, place, exact=part.exact, id=path.stem)

@@ -7,14 +7,14 @@ import re
 XML = re.compile(r"\s*<(?!<)[\w!?]")
 
 ROOTS = {
-    "<robot": "a URDF",
-    "xacro:": "a xacro file",
-    "<mujoco": "an MJCF file",
-    "<sdf": "an SDF file",
-    "<COLLADA": "a COLLADA file",
-    "<html": "a web page",
+    "<robot": ("a URDF", ".urdf or .xacro"),
+    "xacro:": ("a xacro file", ".xacro"),
+    "<mujoco": ("an MJCF file", ".xml"),
+    "<sdf": ("an SDF file", ".sdf"),
+    "<COLLADA": ("a COLLADA file", ""),
+    "<html": ("a web page", ""),
 }
-"""What an XML file is that has this in it."""
+"""What an XML file is that has this in it, and with which ending it would be read as that."""
 
 START = 4096
 """Characters in which a file says what it is."""
@@ -26,11 +26,9 @@ def other_format(text: str) -> str:
     """A sentence on the format that a text is in, or "" for none that is known."""
     start = text[:START]
     if XML.match(start):
-        kind = next((name for root, name in ROOTS.items() if root.lower() in start.lower()), "XML")
-        return (
-            f"found {kind}, expected YAML: robokin reads descriptions of its own; a joint of a URDF is a row "
-            '`- {type: R, origin: "Trans(x, y, z) RPY(roll, pitch, yaw)", axis: [x, y, z]}` with `convention: frames`'
-        )
+        kinds = (kind for root, kind in ROOTS.items() if root.lower() in start.lower())
+        kind, ending = next(kinds, ("XML", ""))
+        return f"found {kind}, expected YAML" + (f", or a file that is called {ending}" if ending else "")
     lines = [line for line in start.splitlines() if line.strip()][:2]
     if lines and lines[0].lstrip().startswith("|") and lines[0].count("|") > 2:
         return f"found a table in Markdown, {ROWS}"

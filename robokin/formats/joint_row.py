@@ -66,14 +66,21 @@ def row_of(cells: MappingType[str, Node], place: RowPlace, convention: str, cont
     kind = attempt(None, row_type, cells["type"])
     cells = dict(cells)
     shift = VariableCell(1, "")
-    variable = "" if kind is None or convention == "frames" else VARIABLE.get(kind, "")
+    variable = "" if kind is None or convention in ("frames", "screws") else VARIABLE.get(kind, "")
     if kind is None:  # which of the cells hold the variable, and what limits are, is not known
         for cell in ("theta", "d", "offset", "limits", "sense"):
             cells.pop(cell, None)
     if variable in cells:
         shift = attempt(shift, _shift, cells, variable, name, place, context)
         del cells[variable]
-    if kind is JointType.FIXED:
+    if kind is JointType.FIXED and convention == "screws":
+        context.faults.add(
+            cells["type"].mark.error(
+                f"found a fixed row (row {place.row}) of screws, expected revolute or prismatic: what does not move is "
+                "in 'home'"
+            )
+        )
+    elif kind is JointType.FIXED:
         for cell in ("offset", "limits", "sense"):
             if cell in cells:
                 context.faults.add(
@@ -90,15 +97,9 @@ def row_of(cells: MappingType[str, Node], place: RowPlace, convention: str, cont
 
     limits = (-np.inf, np.inf)
     if "limits" in cells:
-        limits = attempt(limits, _limits, cells["limits"], turns, where, context)
-    origin = axis = None
-    if convention == "frames":
-        origin, axis = np.eye(4), np.array([0.0, 0.0, 1.0])
-        if "origin" in cells:
-            origin = attempt(origin, transform_of, cells["origin"], context, f"origin {where}")
-        if "axis" in cells:
-            axis = attempt(axis, _axis, cells["axis"], where, context)
-    sense = attempt(1, _sense, cells["sense"], where, context) if "sense" in cells else 1
+        limits = attempt(limits, limits_of, cells["limits"], turns, where, context)
+    origin, axis = _placing(cells, where, convention, context)
+    sense = attempt(1, sense_of, cells["sense"], where, context) if "sense" in cells else 1
     angles = (True, False, False, True, turns)
     numbers = {cell: number(cell, angle) for cell, angle in zip(NUMBERS, angles, strict=True)}
     return Joint(
@@ -111,6 +112,24 @@ def row_of(cells: MappingType[str, Node], place: RowPlace, convention: str, cont
         texts=() if context.faults.count > before else _texts(cells, context),
         sense=sense * shift.sense,
     )
+
+
+def _placing(
+    cells: MappingType[str, Node], where: str, convention: str, context: Context
+) -> tuple[Array | None, Array | None]:
+    """The origin (4, 4) and the axis (3,) of a row that has them; of screws in the base's frame."""
+    if convention not in ("frames", "screws"):
+        return None, None
+    origin, axis = np.eye(4), np.array([0.0, 0.0, 1.0])
+    if "origin" in cells:
+        origin = context.faults.attempt(origin, transform_of, cells["origin"], context, f"origin {where}")
+    if "at" in cells:
+        origin[:3, 3] = context.faults.attempt(
+            np.zeros(3), vector_of, cells["at"], context, f"at {where}", direction=False
+        )
+    if "axis" in cells:
+        axis = context.faults.attempt(axis, _axis, cells["axis"], where, context)
+    return origin, axis
 
 
 def _shift(cells: dict[str, Node], variable: str, name: str, place: RowPlace, context: Context) -> VariableCell:
@@ -144,7 +163,8 @@ def _shift(cells: dict[str, Node], variable: str, name: str, place: RowPlace, co
     return shift
 
 
-def _sense(node: Node, where: str, context: Context) -> int:
+def sense_of(node: Node, where: str, context: Context) -> int:
+    """A sense, 1 or -1. Raises DescriptionError."""
     number = raw_number_of(node, context.scope, f"sense {where}")
     if number not in (1.0, -1.0):
         raise node.mark.error(f"found {describe(node)} as sense {where}, expected 1 or -1")
@@ -155,11 +175,15 @@ def _texts(cells: MappingType[str, Node], context: Context) -> tuple[tuple[str, 
     """The cells that name parameters, as they are written."""
     if "origin" in cells:
         return parameters_in_position(cells["origin"], context)
-    named = ((name, parameters_in(cells[name], context)) for name in NUMBERS if name in cells)
+    numbers = {name: cells[name] for name in NUMBERS if name in cells}
+    if isinstance(at := cells.get("at"), Sequence):
+        numbers |= zip("xyz", at.items, strict=True)
+    named = ((name, parameters_in(node, context)) for name, node in numbers.items())
     return tuple((name, text) for name, text in named if text)
 
 
-def _limits(node: Node, angle: bool, where: str, context: Context) -> tuple[float, float]:
+def limits_of(node: Node, angle: bool, where: str, context: Context) -> tuple[float, float]:
+    """The least and the greatest value [rad | m] that a list of two says. Raises DescriptionError."""
     low, high = context.faults.each(
         lambda item: number_of(item, context, f"limits {where}", angle=angle),
         list_of(node, f"limits {where}: [min, max]", 2),

@@ -6,12 +6,15 @@ import contextlib
 import re
 from collections.abc import Mapping as MappingType
 
-from robokin.errors import DescriptionError, shown
+from robokin.errors import DescriptionError, or_list, shown
 from robokin.formats.joint_row import VARIABLE, RowPlace, row_of, row_type
 from robokin.formats.node_values import Context, fields_of, list_of
-from robokin.formats.schema import DH_ROW, FRAME_ROW, MAX_ROWS, Fields
+from robokin.formats.schema import DH_ROW, FRAME_ROW, MAX_ROWS, SCREW_ROW, Fields
 from robokin.formats.yaml_tree import FilePlace, Mapping, Node, Scalar, Sequence
 from robokin.model import Joint, JointType
+
+TABLES: dict[str, Fields] = {"standard": DH_ROW, "modified": DH_ROW, "frames": FRAME_ROW, "screws": SCREW_ROW}
+"""What a row holds, by convention."""
 
 ZERO = re.compile(r"[-+]?(0+\.?0*|\.0+)")
 """The ways to write a cell of a column that says nothing."""
@@ -26,7 +29,7 @@ def rows_of(
     """
     before = context.faults.count
     convention = stated or _convention_by_keys(node)
-    known = FRAME_ROW if convention == "frames" else DH_ROW
+    known = TABLES[convention]
     rows = _rows_of_columns(node, convention, context) if isinstance(node, Mapping) else list_of(node, "the joints")
     if not rows:
         raise node.mark.error("found no joints, expected at least one row")
@@ -61,7 +64,7 @@ def _convention_by_keys(node: Node) -> str:
     """The convention that a table is meant in, where the file states none that there is."""
     rows = node.items if isinstance(node, Sequence) else [node]
     keys = {key for row in rows if isinstance(row, Mapping) for key in row.keys}
-    return "frames" if keys & {"origin", "axis"} else "standard"
+    return "screws" if "at" in keys else "frames" if keys & {"origin", "axis"} else "standard"
 
 
 def _kind_or_none(row: Node) -> JointType | None:
@@ -81,18 +84,20 @@ def _row_in(row: Node, known: Fields, place: RowPlace, convention: str, context:
 
 
 def _without_other_cells(row: Mapping, known: Fields, where: str, convention: str, context: Context) -> Mapping:
-    """A row, or columns, without the cells of the other kind of table: mistakes, if the convention is known."""
-    other = FRAME_ROW if known is DH_ROW else DH_ROW
+    """A row, or columns, without the cells of other kinds of tables: mistakes, if the convention is known."""
+    other = {name for table in TABLES.values() for name in table}
     keys = {name: mark for name, mark in row.keys.items() if name not in other or name in known}
     for name, mark in row.keys.items():
         if name not in keys and convention:
-            context.faults.add(mark.error(_other_convention(name, where, convention, known)))
+            context.faults.add(mark.error(_other_convention(name, where, convention, known, "at" in row.keys)))
     return Mapping({name: row.entries[name] for name in keys}, row.mark, keys)
 
 
-def _other_convention(name: str, where: str, convention: str, known: MappingType[str, object]) -> str:
-    """The message for a cell that belongs to the other kind of table."""
-    right = "standard or modified" if convention == "frames" else "frames"
+def _other_convention(name: str, where: str, convention: str, known: MappingType[str, object], placed: bool) -> str:
+    """The message for a cell that belongs to another kind of table; placed: whether its row has a place `at`."""
+    right = or_list([other for other, fields in TABLES.items() if name in fields])
+    if name == "axis":
+        right = "screws" if placed else "frames"
     return (
         f"found '{name}' in {where} of the {convention} convention, expected one of {', '.join(known)}, "
         f"or `convention: {right}`"
@@ -101,7 +106,7 @@ def _other_convention(name: str, where: str, convention: str, known: MappingType
 
 def _rows_of_columns(node: Mapping, convention: str, context: Context) -> list[Node]:
     """One mapping a row, from a mapping of columns."""
-    known = FRAME_ROW if convention == "frames" else DH_ROW
+    known = TABLES[convention]
     node = _without_other_cells(node, known, "the joints' columns", convention, context)
     columns = fields_of(node, known, "the joints' columns", context.faults)
     types = columns["type"]

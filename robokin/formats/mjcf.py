@@ -13,13 +13,12 @@ from pathlib import Path, PurePosixPath
 
 from robokin.errors import DescriptionError, InputError, shown
 from robokin.files import open_path, read_up_to
-from robokin.formats.excerpts import LINE_BREAK, excerpt
 from robokin.formats.faults import Faults
 from robokin.formats.mjcf_bodies import MjcfBodies
 from robokin.formats.mjcf_settings import MjcfClasses, MjcfPoses, compiler_of
 from robokin.formats.mjcf_tree import MjcfTree
 from robokin.formats.rounded_angles import RoundedAngles
-from robokin.formats.xml_tree import MAX_DEPTH, MAX_XML_BYTES, XmlNode, read_xml
+from robokin.formats.xml_tree import MAX_DEPTH, MAX_XML_BYTES, XmlNode, XmlText, read_xml
 from robokin.model.tree import Tree
 
 EXPECTED = "a MuJoCo description (.xml)"
@@ -50,20 +49,24 @@ def read_mjcf(
     else:
         source_path = None
     root = read_xml(source, place)
-    if root.tag != "mujoco":
-        raise root.error(f"found <{shown(root.tag)}>, expected <mujoco>")
-    files = _Includes(folder, source_path, len(source))
+    files = _Includes(folder, source_path, len(source), root.document)
     faults = Faults()
     try:
         tree = _read(files.expanded(root), exact, id, balls, faults)
         faults.stop()
     except DescriptionError as error:
-        raise _with_excerpts(error, faults, {root.document.file: root.document.text, **files.texts}) from None
+        whole = faults.ended(error, "")
+        for known in whole.errors:
+            if known.file in files.documents:
+                files.documents[known.file].with_line(known)
+        raise whole from None
     return tree
 
 
 def _read(root: XmlNode, exact: bool, id: str, balls: bool, faults: Faults) -> Tree:
     """The tree of a file whose includes are in place."""
+    if root.tag != "mujoco":
+        raise root.error(f"found <{shown(root.tag)}>, expected <mujoco>")
     rounded = RoundedAngles(exact)
     compiler = compiler_of(root.all("compiler"))
     classes = MjcfClasses()
@@ -97,24 +100,13 @@ def _inside(root: XmlNode, tag: str) -> Iterator[XmlNode]:
         yield from section.children
 
 
-def _with_excerpts(error: DescriptionError, faults: Faults, texts: dict[str, str]) -> DescriptionError:
-    """All mistakes as one error, each with the line of its own file shown."""
-    if error not in faults.found:
-        faults.found.append(error)
-    lines = {file: LINE_BREAK.split(text) for file, text in texts.items()}
-    for known in faults.found:
-        if known.file in lines:
-            known.excerpt = excerpt(lines[known.file], known.line, known.column, known.width)
-    return faults.whole()
-
-
 class _Includes:
-    """Puts included files in the place of `<include>`; `texts` are theirs, by the names that errors give them."""
+    """Puts included files in the place of `<include>`; `documents`: the texts of all, by the names that errors give."""
 
-    def __init__(self, folder: Path | None, main: Path | None, size: int) -> None:
+    def __init__(self, folder: Path | None, main: Path | None, size: int, document: XmlText) -> None:
         self.folder = folder
         self.seen = {main.resolve()} if main is not None else set()
-        self.texts: dict[str, str] = {}
+        self.documents = {document.file: document}
         self.size = size
 
     def expanded(self, node: XmlNode, depth: int = 0) -> XmlNode:
@@ -166,5 +158,5 @@ class _Includes:
         if self.size > MAX_XML_BYTES:
             raise node.error(f"found files over {MAX_XML_BYTES >> 20} MiB together, expected a description", "file")
         root = read_xml(data, file)
-        self.texts[file] = root.document.text
+        self.documents[file] = root.document
         return root

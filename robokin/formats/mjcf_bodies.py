@@ -32,8 +32,8 @@ GENERATING = ("composite", "flexcomp", "replicate", "attach")
 
 READ = ("body", "joint", "freejoint", "site", "frame")
 
-MOST_BODIES, MOST_JOINTS = 5000, 2000
-"""Bodies and joints of one file; a humanoid with two hands has some 100."""
+MOST_BODIES, MOST_JOINTS, MOST_SITES = 5000, 2000, 5000
+"""Bodies, joints and sites of one file; a humanoid with two hands has some 100."""
 
 
 @dataclass(eq=False)
@@ -99,6 +99,7 @@ class MjcfBodies:
         self.notes: list[Note] = []
         self.values = 0
         self.joints = 0
+        self.sites = 0
         self.names = TakenNames()
         self.names.take(world, "body", WORLD)
 
@@ -225,6 +226,9 @@ class MjcfBodies:
         self.notes.append(Note(message, place.file, place.line, place.column))
 
     def _read_site(self, node: XmlNode, standing: _Standing) -> None:
+        self.sites += 1
+        if self.sites > MOST_SITES:
+            raise node.error(f"found more than {MOST_SITES} sites, expected a robot")
         name = self.names.take(node, "site", node.attributes.get("name", ""))
         full = self.classes.filled(node, standing.childclass)
         pose = self._along(full) if full.attributes.get("fromto", "").strip() else self.poses.pose_of(full)

@@ -17,6 +17,7 @@ from robokin.formats.rounded_angles import RoundedAngles
 from robokin.formats.xml_numbers import numbers_at
 from robokin.formats.xml_tree import XmlNode
 from robokin.spatial import rotation_from_axis_angle, rotation_from_quaternion, transform, z_to
+from robokin.spatial.transforms import FARTHEST
 
 MAIN = "main"
 """The class of what names none."""
@@ -26,6 +27,9 @@ ORIENTATIONS = {"quat": 4, "axisangle": 4, "euler": 3, "xyaxes": 6, "zaxis": 3}
 
 DEFAULTED = ("joint", "site", "equality")
 """Elements whose defaults matter here."""
+
+MOST_CLASSES = 2000
+"""Classes of one file; a hand has some 30."""
 
 NO_LENGTH = 1e-14
 """What is shorter has no direction, as in mujoco."""
@@ -43,7 +47,10 @@ def values_of(node: XmlNode, key: str, count: int | None) -> tuple[float, ...] |
         raise node.error(
             f"found '{shown(text)}' as '{key}', expected numbers with blanks and no commas between them", key
         )
-    return numbers_at(text, node.place_of(key), f"'{key}'", count, [])
+    values = numbers_at(text, node.place_of(key), f"'{key}'", count, [])
+    if any(abs(value) > FARTHEST for value in values):
+        raise node.error(f"found '{shown(text)}' as '{key}', expected numbers of at most {FARTHEST:g}", key)
+    return values
 
 
 def choice_of(node: XmlNode, key: str, choices: Collection[str], otherwise: str) -> str:
@@ -121,6 +128,8 @@ class MjcfClasses:
             if not inner or inner in self.known:
                 found = f"the class {shown(repr(inner))} twice" if inner else "a default inside another without a class"
                 raise node.error(f"found {found}, expected a class of its own", "class")
+            if len(self.known) >= MOST_CLASSES:
+                raise node.error(f"found more than {MOST_CLASSES} classes, expected a robot")
             self.known[inner] = {tag: dict(values) for tag, values in own.items()}
             self._read(node, inner)
 

@@ -14,7 +14,7 @@ from robokin.formats.foreign_texts import other_format
 from robokin.formats.node_values import Context, choice_of, expression_text, fields_of, text_of
 from robokin.formats.number_expressions import NAME, RESERVED, Scope, Value
 from robokin.formats.parameters import Parameters
-from robokin.formats.schema import KINDS, MECHANISM, ROBOT, TREE, UNITS, VERSION, WHEELED
+from robokin.formats.schema import KINDS, MECHANISM, TREE, UNITS, VERSION, WHEELED
 from robokin.formats.yaml_tree import FilePlace, Mapping, Node, Scalar, describe, read_tree
 from robokin.model import Mechanism, Robot, Tree, WheeledBase
 from robokin.units import Units
@@ -115,9 +115,12 @@ def _described(
         head = _head(fields_of(root, TREE, "a tree", faults), overrides, id, file, faults)
         _refuse_mode(mode, head)
         return read_tree_fields(head)
+    from robokin.formats.chain_forms import FORMS, form_of, without_other_keys
     from robokin.formats.robot_fields import read_robot
 
-    head = _head(fields_of(root, ROBOT, "a robot", faults), overrides, id, file, faults)
+    form = form_of(root)
+    fields = fields_of(without_other_keys(root, form, faults), FORMS[form], "a robot", faults)
+    head = _head(fields, overrides, id, file, faults)
     _refuse_mode(mode, head)
     return read_robot(head)
 
@@ -140,7 +143,7 @@ def _check_version(root: Mapping, faults: Faults) -> None:
     for near in nearest("robokin", root.entries, 1):
         error = root.keys.pop(near).error(f"found the unknown key '{shown(near)}', expected `robokin: {VERSION}`")
         del root.entries[near]
-    if not {"joints", "branches", "links", "wheels"} & root.entries.keys():
+    if not {"joints", "branches", "links", "wheels", "ets", "c2"} & root.entries.keys():
         faults.stop()  # what is wrong may be why there is no table
         raise error
     faults.add(error)

@@ -1,19 +1,14 @@
-"""Angles in radians that are plainly parts of pi cut in print: 1.5708, 3.1416.
-
-A right angle that is off by 4e-6 makes axes skew that are meant to be parallel, and no closed form applies.
-"""
+"""The angles of one file that are taken as multiples of 15° cut in print, and the one note that tells of them."""
 
 from __future__ import annotations
 
-import math
-
 from robokin.errors import Note, counted, shown
-from robokin.formats.written_numbers import is_part_of_pi
+from robokin.formats.snapped_angles import snapped_angle
 from robokin.formats.yaml_tree import FilePlace
 
 
 class RoundedAngles:
-    """Takes such angles as meant, and counts them for one note; not with `exact`."""
+    """Takes angles in radians as what was meant, and counts where that is another number; not with `exact`."""
 
     def __init__(self, exact: bool = False) -> None:
         self.exact = exact
@@ -22,10 +17,10 @@ class RoundedAngles:
 
     def meant(self, value: float, text: str, place: FilePlace) -> float:
         """The angle [rad] that is meant by one written as `text`."""
-        if self.exact or not is_part_of_pi(value, text):
+        if self.exact:
             return value
-        meant = round(value / (math.pi / 12.0)) * math.pi / 12.0
-        if abs(meant - value) > 1e-15:
+        meant = snapped_angle(value, text)
+        if meant != value:
             self.count += 1
             self.first = self.first or (place, text)
         return meant
@@ -35,8 +30,10 @@ class RoundedAngles:
         if self.first is None:
             return ()
         place, text = self.first
+        angles = "an angle" if self.count == 1 else counted(self.count, "angle")
         message = (
-            f"took {counted(self.count, 'angle')} such as {shown(text)} as the parts of pi that they are rounded from; "
-            "exact takes them as written"
+            f"{angles} cut in print ({shown(text)}) taken as multiples of 15° (--exact takes them as written)"
+            if self.count > 1
+            else f"{angles} cut in print ({shown(text)}) taken as a multiple of 15° (--exact takes it as written)"
         )
         return (Note(message, place.file, place.line, place.column),)

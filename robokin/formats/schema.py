@@ -27,6 +27,9 @@ class Field:
 Fields = dict[str, Field]
 
 CONVENTIONS = ("standard", "modified", "frames")
+OTHER_FORMS = ("screws", "opw")
+"""What `convention` may also say: ways to write a chain that are read as rows of `frames`."""
+
 ROW_TYPES = ("revolute", "prismatic", "fixed")
 SPACES = ("planar", "spherical", "spatial")
 
@@ -46,6 +49,44 @@ ROBOT: Fields = {
     "joints": Field("rows", "the table: a list of rows, or one list for each column", required=True),
     "tool": Field("transform", "fixed transform from the last frame to the end effector"),
     "poses": Field("poses", "named configurations, usable as --q NAME"),
+}
+
+LIMIT_LIST = Field("limit_list", "[min, max] of each q, ~ for none")
+
+SCREWS: Fields = {
+    **COMMON,
+    "convention": Field("text", "screws: the product of exponentials", required=True, choices=("screws",)),
+    "base": ROBOT["base"],
+    "home": Field("transform", "the tool's pose in frame 0 at q = 0", required=True),
+    "joints": Field("screw_rows", "the joints' axes in frame 0 at q = 0: rows, or one list for each column", True),
+    "poses": ROBOT["poses"],
+}
+
+ETS: Fields = {
+    **COMMON,
+    "base": ROBOT["base"],
+    "ets": Field("text", "elementary steps from the base to the tool: tz(0.3) Rz(q1) tx(0.1) Ry(-q2)", required=True),
+    "limits": LIMIT_LIST,
+    "tool": ROBOT["tool"],
+    "poses": ROBOT["poses"],
+}
+
+OPW: Fields = {
+    **COMMON,
+    "convention": Field("text", "opw: an arm with a wrist, by seven lengths", required=True, choices=("opw",)),
+    "base": ROBOT["base"],
+    "a1": Field("number", "from the first axis forward to the second; default 0"),
+    "a2": Field("number", "from the third axis to that of the forearm, where the arm points up; default 0"),
+    "b": Field("number", "from the first axis to the left; default 0"),
+    "c1": Field("number", "from the base up to the second axis; default 0"),
+    "c2": Field("number", "from the second axis to the third", required=True),
+    "c3": Field("number", "from the third axis to the wrist's centre, along the forearm", required=True),
+    "c4": Field("number", "from the wrist's centre to the flange; default 0"),
+    "offsets": Field("six_numbers", "six angles, subtracted: each joint turns by sense · q - offset; default 0"),
+    "senses": Field("six_senses", "six times 1 or -1; default 1"),
+    "limits": LIMIT_LIST,
+    "tool": ROBOT["tool"],
+    "poses": ROBOT["poses"],
 }
 
 UNITS: Fields = {
@@ -105,6 +146,15 @@ TIP: Fields = {
     "name": Field("text", "what the tip is called", required=True),
     "on": Field("text", "the branch, or the joint (branch.joint), that it is on; default the branch of its name"),
     "tool": Field("transform", "fixed transform from there to the tip"),
+}
+
+SCREW_ROW: Fields = {
+    "name": ROW["name"],
+    "type": Field("text", "revolute (R) or prismatic (P)", required=True, choices=ROW_TYPES[:2]),
+    "limits": ROW["limits"],
+    "sense": ROW["sense"],
+    "axis": Field("axis", "its direction in frame 0 at q = 0: x, y, z or [x, y, z]; default z"),
+    "at": Field("place_in_space", "a point [x, y, z] on it in frame 0 at q = 0; default the origin"),
 }
 
 MECHANISM: Fields = {
@@ -206,6 +256,8 @@ def json_schema() -> dict[str, Any]:
     columns = {
         name: {"type": "array"} for name in (*DH_ROW, *FRAME_ROW) if name != "type"
     } | {"type": {"type": ["string", "array"], "description": "one letter a row, such as RRPRRR"}}  # fmt: skip
+    screw_columns = {name: columns.get(name, {"type": "array"}) for name in SCREW_ROW}
+    limits = {**numbers, "minItems": 2, "maxItems": 2}
     definitions: dict[str, Any] = {
         "version": {"const": VERSION},
         "text": text,
@@ -216,13 +268,16 @@ def json_schema() -> dict[str, Any]:
         "units": _object(UNITS),
         "parameters": {"type": ["object", "null"], "additionalProperties": {"$ref": "#/$defs/number"}},
         "poses": {"type": "object", "additionalProperties": numbers},
-        "branches": {"type": "object", "additionalProperties": _object(BRANCH), "minProperties": 1},
+        "branches": {"type": "object", "additionalProperties": _object(BRANCH)},
         "coupled": {"anyOf": [text, {"type": "object", "additionalProperties": {"$ref": "#/$defs/number"}}]},
         "couplings": {"type": "array", "items": _object(COUPLING)},
         "tips": {"type": "array", "items": {"anyOf": [text, _object(TIP)]}, "minItems": 1},
         "expected": _object(EXPECTED),
         "base_expected": _object(BASE_EXPECTED),
-        "limits": {**numbers, "minItems": 2, "maxItems": 2},
+        "limits": limits,
+        "limit_list": {"type": "array", "items": {"anyOf": [limits, {"type": "null"}]}},
+        "six_numbers": {**numbers, "minItems": 6, "maxItems": 6},
+        "six_senses": {"type": "array", "items": {"$ref": "#/$defs/sense"}, "minItems": 6, "maxItems": 6},
         "links": {"type": "array", "items": {"anyOf": [text, _object(LINK)]}, "minItems": 2},
         "places": {"type": "object", "additionalProperties": {**numbers, "minItems": 2, "maxItems": 3}},
         "directions": {"type": "object", "additionalProperties": number},
@@ -231,20 +286,12 @@ def json_schema() -> dict[str, Any]:
         "vector": {**numbers, "minItems": 2, "maxItems": 3},
         "point": {**numbers, "minItems": 2, "maxItems": 3},
         "place": {**numbers, "minItems": 2, "maxItems": 2},
+        "place_in_space": {**numbers, "minItems": 3, "maxItems": 3},
         "vectors": {"type": "array", "items": {"$ref": "#/$defs/vector"}, "minItems": 2, "maxItems": 2},
         "axis": {"anyOf": [{"enum": ["x", "y", "z"]}, {**numbers, "minItems": 3, "maxItems": 3}]},
         "row": {"anyOf": [_object(DH_ROW), _object(FRAME_ROW)]},
-        "rows": {
-            "anyOf": [
-                {"type": "array", "items": {"$ref": "#/$defs/row"}, "minItems": 1},
-                {
-                    "type": "object",
-                    "properties": columns,
-                    "additionalProperties": False,
-                    "required": ["type"],
-                },
-            ]
-        },
+        "rows": _table({"$ref": "#/$defs/row"}, columns),
+        "screw_rows": _table(_object(SCREW_ROW), screw_columns),
         "mechanism_joints": {"type": "array", "items": _object(MECHANISM_JOINT), "minItems": 1},
         "wheels": {"type": "array", "items": _object(WHEEL), "minItems": 1},
     }
@@ -252,7 +299,7 @@ def json_schema() -> dict[str, Any]:
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "robokin description, version 1",
         "description": "A robot, a tree of branches, a mechanism (links and joints, with loops), or a wheeled base.",
-        "anyOf": [_object(ROBOT), _object(TREE), _object(MECHANISM), _object(WHEELED)],
+        "anyOf": [_object(fields) for fields in (ROBOT, SCREWS, ETS, OPW, TREE, MECHANISM, WHEELED)],
         "$defs": definitions,
     }
 
@@ -261,12 +308,18 @@ TYPE_LETTERS = {"R": "revolute", "P": "prismatic", "F": "fixed"}
 """Short names of the row types."""
 
 
+def _table(row: dict[str, Any], columns: dict[str, Any]) -> dict[str, Any]:
+    """A table by rows, or by columns."""
+    by_columns = {"type": "object", "properties": columns, "additionalProperties": False, "required": ["type"]}
+    return {"anyOf": [{"type": "array", "items": row, "minItems": 1}, by_columns]}
+
+
 def _object(fields: Fields) -> dict[str, Any]:
     properties: dict[str, Any] = {}
     for name, field in fields.items():
         if field.choices:
             letters = [letter for letter, full in TYPE_LETTERS.items() if full in field.choices]
-            short = letters if field.choices == ROW_TYPES else []
+            short = letters if "revolute" in field.choices and len(field.choices) <= len(ROW_TYPES) else []
             properties[name] = {"enum": [*field.choices, *short], "description": field.doc}
         else:
             properties[name] = {"$ref": f"#/$defs/{field.holds}", "description": field.doc}

@@ -35,9 +35,6 @@ OLDEST = (1, 2)
 TYPES = {"prismatic": "prismatic", "screw": "helical"}
 """What is no revolute joint, of those with one freedom an axis."""
 
-MOST_LINKS, MOST_JOINTS = 5000, 2000
-"""Links and joints of one file; a humanoid with two hands has some 100."""
-
 MOST_SHOWN = 8
 """Names that a note lists."""
 
@@ -69,7 +66,10 @@ def read_sdf(
         except InputError as error:
             raise error if isinstance(error, DescriptionError) else model.top.node.error(str(error)) from None
     except DescriptionError as error:
-        raise faults.ended(error, root.document.text) from None
+        whole = faults.ended(error, "")
+        for known in whole.errors:
+            root.document.with_line(known)
+        raise whole from None
     return Tree(model.top.name or id or "robot", graph, id=id, notes=(*notes, *maker.notes, *rounded.notes()))
 
 
@@ -124,9 +124,7 @@ class _SdfGraph:
         self.balls = balls
         self.notes: list[Note] = []
         self.names = TakenNames()
-        for kind, frames, most in (("link", model.links, MOST_LINKS), ("joint", model.joint_frames, MOST_JOINTS)):
-            if len(frames) > most:
-                raise frames[most].node.error(f"found more than {most} {kind}s, expected a robot")
+        for kind, frames in (("link", model.links), ("joint", model.joint_frames)):
             for frame in frames:
                 self.names.take(frame.node, kind, frame.name)
         self.above: dict[SdfFrame, SdfJoint] = {}
@@ -280,8 +278,11 @@ class _SdfGraph:
         leaves = [frame for frame in kept if frame not in parents]
         leaves = [frame for frame in leaves if self._is_moved(frame)] or leaves
         tips: list[Tip] = []
+        frames: dict[SdfFrame, list[SdfFrame]] = {}
+        for frame in self.model.frames:
+            frames.setdefault(places.link(frame), []).append(frame)
         for leaf in leaves:
-            on = [frame for frame in self.model.frames if places.link(frame) is leaf]
+            on = frames.get(leaf, [])
             link = self.link_of[leaf]
             inverse = invert(places.pose(leaf))
             tips += [Tip(frame.name, link, cleaned(inverse @ places.pose(frame))) for frame in on]

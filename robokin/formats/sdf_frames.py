@@ -18,6 +18,7 @@ from robokin.formats.rounded_angles import RoundedAngles
 from robokin.formats.xml_numbers import numbers_at
 from robokin.formats.xml_tree import XmlNode
 from robokin.spatial import invert, rotation_from_quaternion, rotation_from_rpy, transform
+from robokin.spatial.transforms import FARTHEST
 
 SDF_WORLD = "world"
 MODEL = "__model__"
@@ -87,6 +88,8 @@ class SdfPlaces:
     def __init__(self, top: SdfFrame, world: SdfFrame) -> None:
         self.world = world
         self.known: dict[SdfFrame, Array] = {top: np.eye(4), world: invert(top.local)}
+        self.held: dict[SdfFrame, SdfFrame] = {}
+        """Of frames the link that each moves with, as far as it has been asked."""
         self.placed: dict[SdfFrame, SdfFrame] = {}
         """Of a nested model the frame of its own that its pose is of."""
 
@@ -131,6 +134,9 @@ class SdfPlaces:
         """The link that a frame moves with. Raises DescriptionError for frames attached in a circle."""
         seen: set[SdfFrame] = set()
         while frame.kind not in ("link", SDF_WORLD):
+            if frame in self.held:
+                frame = self.held[frame]
+                break
             if frame in seen:
                 raise frame.node.error(f"found {shown(frame.name)} attached to itself, expected a link in the end")
             seen.add(frame)
@@ -140,6 +146,7 @@ class SdfPlaces:
             else:
                 assert scope is not None
                 frame = scope.find(frame.holder or MODEL, frame.node, world=self.world)
+        self.held |= dict.fromkeys(seen, frame)
         return frame
 
 
@@ -176,6 +183,8 @@ def pose_in(node: XmlNode, rounded: RoundedAngles) -> tuple[Array, str]:
     if form != "euler_rpy":
         raise pose.error(f"found {shown(repr(form))}, expected euler_rpy or quat_xyzw", "rotation_format")
     values = numbers_at(text, pose.mark, "the pose", 6, [])
+    if any(abs(value) > FARTHEST for value in values):
+        raise pose.error(f"found the pose '{shown(text)}', expected numbers of at most {FARTHEST:g}")
     if pose.attributes.get("degrees", "false") in ("true", "1"):
         rpy = list(np.radians(values[3:]))
     else:

@@ -36,6 +36,9 @@ AXES = {
 
 SHORTEST_AXIS = 1e-12
 
+MOST_LINKS, MOST_JOINTS = 5000, 2000
+"""Links and joints of one file; a humanoid with two hands has some 100."""
+
 
 @dataclass(eq=False)
 class SdfAxis:
@@ -98,6 +101,9 @@ class SdfModel:
         if self.version < (1, 7):
             towards = ""  # until then what a pose was in was fixed
         frame = SdfFrame(scope.prefix + name, node.tag, node, scope, pose, towards, scope.own)
+        for kind, found, most in (("link", self.links, MOST_LINKS), ("joint", self.joint_frames, MOST_JOINTS)):
+            if kind == node.tag and len(found) >= most:
+                raise node.error(f"found more than {most} {kind}s, expected a robot")
         if node.tag == "model":
             self._add_model(node, frame, scope, name)
         elif node.tag == "link":

@@ -10,93 +10,31 @@ Source: ROS wiki, urdf/XML/joint, and urdfdom's joint.cpp, whose defaults these 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 
-import numpy as np
-
-from robokin.arrays import Array
-from robokin.errors import DescriptionError, InputError, Note, counted, did_you_mean, shown
+from robokin.errors import DescriptionError, InputError, counted, did_you_mean, shown, visible
 from robokin.formats.faults import Faults
-from robokin.formats.snapped_angles import snapped_angle
 from robokin.formats.tool_names import default_tips
-from robokin.formats.xml_numbers import number_of, numbers_of
+from robokin.formats.urdf_joints import (
+    FREE,
+    MOST_NAMED,
+    UrdfJoint,
+    UrdfReading,
+    listed_names,
+    mimic_factors,
+    name_of,
+    read_joint,
+    single_child,
+)
 from robokin.formats.xml_tree import XmlNode, XmlText, read_xml
 from robokin.model.graph import Coupling, Graph, GraphJoint
 from robokin.model.tree import Tree
 from robokin.spatial import exact as whole_entries
-from robokin.spatial import invert, rotation_from_rpy, transform, z_to
-from robokin.spatial.transforms import FARTHEST
+from robokin.spatial import invert, z_to
 
 MAX_LINKS = 2000
 """Links of a tree; a humanoid with two hands has 150."""
 
-MOST_NAMED = 12
-"""Names that a message lists."""
-
-KINDS = {
-    "revolute": "revolute",
-    "continuous": "revolute",
-    "prismatic": "prismatic",
-    "fixed": "fixed",
-    "floating": "floating",
-    "planar": "planar",
-}
-"""A joint's kind in a tree by its type in a URDF."""
-
-FREE = {"floating": 6, "planar": 3}
-"""The freedoms of joints that are more than one."""
-
 NAMELESS = "robot"
-
-
-@dataclass(eq=False)
-class UrdfJoint:
-    """A joint as it stands in the file, with all its values but those of other joints."""
-
-    name: str
-    kind: str
-    parent: str
-    child: str
-    node: XmlNode
-    origin: Array
-    axis: Array
-    limits: tuple[float, float] = (-np.inf, np.inf)
-
-    @property
-    def moves(self) -> bool:
-        """Whether it has a value."""
-        return self.kind in ("revolute", "prismatic")
-
-
-@dataclass(eq=False)
-class UrdfReading:
-    """What has been found on the way: mistakes, notes, and names that one note is written for."""
-
-    exact: bool
-    faults: Faults = field(default_factory=Faults)
-    notes: list[Note] = field(default_factory=list)
-    snapped: list[tuple[str, XmlNode]] = field(default_factory=list)
-    unlimited: list[tuple[str, XmlNode]] = field(default_factory=list)
-    halved: list[tuple[str, XmlNode]] = field(default_factory=list)
-    turning: list[tuple[str, XmlNode]] = field(default_factory=list)
-
-    def note(self, node: XmlNode, message: str) -> None:
-        """Keep a note at a node."""
-        mark = node.mark
-        self.notes.append(Note(message, mark.file, mark.line, mark.column))
-
-    def gathered(self) -> tuple[Note, ...]:
-        """All notes, one for each kind of thing that happened at several joints."""
-        for found, start, end in (
-            (self.snapped, "angles cut in print are taken as multiples of 15° in", "(--exact takes them as written)"),
-            (self.unlimited, "no limits are given, and none are taken, for", ""),
-            (self.halved, "one limit is missing, and is taken as 0 as URDF has it, for", ""),
-            (self.turning, "limits are ignored, as the joint is continuous, for", ""),
-        ):
-            if found:
-                names = _listed([name for name, _ in dict(found).items()])
-                self.note(found[0][1], f"{start} {names} {end}".strip())
-        return tuple(sorted(self.notes, key=lambda note: (note.line, note.column)))
 
 
 def read_urdf(data: bytes | str, place: str, exact: bool = False, id: str = "") -> Tree:
@@ -144,7 +82,7 @@ def _read_robot(root: XmlNode, reading: UrdfReading, id: str, least_joints: int)
     kept = {base} | {joint.child for joint in joints}
     links = {name: node for name, node in links.items() if name in kept}
     couplings = [coupling for coupling in couplings if any(joint.name == coupling.joint for joint in joints)]
-    name = root.attributes.get("name", "").strip()
+    name = visible(root.attributes.get("name", "").strip())
     names = [*links]
     numbers = {link: number for number, link in enumerate(names)}
     graph_joints = tuple(_graph_joint(joint, row, numbers) for row, joint in enumerate(joints))
@@ -170,7 +108,7 @@ def _read_links(root: XmlNode, faults: Faults) -> dict[str, XmlNode]:
     if len(nodes) > MAX_LINKS:
         raise nodes[MAX_LINKS].error(f"found {len(nodes)} links, expected at most {MAX_LINKS}")
     for node in nodes:
-        name = faults.attempt("", _name_of, node)
+        name = faults.attempt("", name_of, node)
         if name and name in links:
             first = links[name].mark.line
             faults.add(
@@ -181,13 +119,6 @@ def _read_links(root: XmlNode, faults: Faults) -> dict[str, XmlNode]:
     return links
 
 
-def _name_of(node: XmlNode) -> str:
-    name = node.attributes.get("name", "")
-    if not name.strip():
-        raise node.error(f'found a <{node.tag}> without a name, expected name="…"', "name")
-    return name
-
-
 def _read_joints(root: XmlNode, links: Mapping[str, XmlNode], reading: UrdfReading) -> list[UrdfJoint]:
     """The joints in the order of the file; each mistake is kept."""
     joints: dict[str, UrdfJoint] = {}
@@ -196,7 +127,7 @@ def _read_joints(root: XmlNode, links: Mapping[str, XmlNode], reading: UrdfReadi
     if len(nodes) > MAX_LINKS:
         raise nodes[MAX_LINKS].error(f"found {len(nodes)} joints, expected at most {MAX_LINKS}")
     for node in nodes:
-        joint = reading.faults.attempt(None, _read_joint, node, links, reading)
+        joint = reading.faults.attempt(None, read_joint, node, links, reading)
         if joint is None:
             continue
         if joint.name in joints:
@@ -217,124 +148,16 @@ def _read_joints(root: XmlNode, links: Mapping[str, XmlNode], reading: UrdfReadi
     return [*joints.values()]
 
 
-def _read_joint(node: XmlNode, links: Mapping[str, XmlNode], reading: UrdfReading) -> UrdfJoint:
-    """One joint. Raises DescriptionError."""
-    name = _name_of(node)
-    type = node.attributes.get("type", "")
-    if type not in KINDS:
-        found = f"the type '{shown(type)}'" if type else "no type"
-        expected = did_you_mean(type, KINDS) or ", expected revolute, continuous, prismatic or fixed"
-        raise node.error(f"found {found} of joint '{shown(name)}'{expected}", "type")
-    parent, child = (_link_of(node, name, end, links) for end in ("parent", "child"))
-    if parent == child:
-        raise node.error(f"found link '{shown(child)}' as its own parent in joint '{shown(name)}', expected two links")
-    joint = UrdfJoint(
-        name, KINDS[type], parent, child, node, _read_origin(node, name, reading), np.array([1.0, 0.0, 0.0])
-    )
-    if joint.moves:
-        joint.axis = _read_axis(node, name, reading)
-        joint.limits = _read_limits(node, name, type, reading)
-    return joint
-
-
-def _link_of(node: XmlNode, joint: str, end: str, links: Mapping[str, XmlNode]) -> str:
-    """The link that a joint's `parent` or `child` names."""
-    inner = node.first(end)
-    if inner is None or "link" not in inner.attributes:
-        raise (inner or node).error(f"found joint '{shown(joint)}' without a {end}, expected <{end} link=\"…\"/>")
-    name = inner.attributes["link"]
-    if name not in links:
-        expected = did_you_mean(name, links) or ", expected the name of a <link>"
-        raise inner.error(
-            f"found the unknown link '{shown(name)}' as {end} of joint '{shown(joint)}'{expected}", "link"
-        )
-    return name
-
-
-def _single(node: XmlNode, tag: str, joint: str, reading: UrdfReading) -> XmlNode | None:
-    """A child of which there should be one: the first, as other programs take it."""
-    found = node.all(tag)
-    if len(found) > 1 and any(other.attributes != found[0].attributes for other in found):
-        reading.note(found[1], f"found a second <{tag}> in joint '{shown(joint)}', the first is taken")
-    return found[0] if found else None
-
-
-def _vector(node: XmlNode, attribute: str, reading: UrdfReading) -> tuple[float, ...]:
-    """Three numbers, none beyond what is a length."""
-    values = numbers_of(node, attribute, 3, reading.notes)
-    if max(map(abs, values)) > FARTHEST:
-        raise node.error(f"found '{shown(node.attributes[attribute])}', expected numbers up to {FARTHEST:g}", attribute)
-    return values
-
-
-def _read_origin(node: XmlNode, joint: str, reading: UrdfReading) -> Array:
-    """The joint's frame (4, 4) [m] in its parent's."""
-    origin = _single(node, "origin", joint, reading)
-    xyz: tuple[float, ...] = (0.0, 0.0, 0.0)
-    rpy = xyz
-    if origin is not None and "xyz" in origin.attributes:
-        xyz = _vector(origin, "xyz", reading)
-    if origin is not None and "rpy" in origin.attributes:
-        rpy = _vector(origin, "rpy", reading)
-        if not reading.exact:
-            words = origin.attributes["rpy"].replace(",", " ").split()
-            meant = tuple(map(snapped_angle, rpy, words))
-            if max(abs(a - b) for a, b in zip(meant, rpy, strict=True)) > SNAP_SAID:
-                reading.snapped.append((joint, origin))
-            rpy = meant
-    return transform(rotation_from_rpy(rpy), xyz)
-
-
-SNAP_SAID = 1e-9
-"""An angle [rad] that is moved by less than this is moved without a note."""
-
-
-def _read_axis(node: XmlNode, joint: str, reading: UrdfReading) -> Array:
-    """The joint's axis (3,) in its frame, of any length but zero."""
-    axis = _single(node, "axis", joint, reading)
-    if axis is None or "xyz" not in axis.attributes:
-        return np.array([1.0, 0.0, 0.0])
-    values = np.array(_vector(axis, "xyz", reading))
-    size = float(np.max(np.abs(values)))
-    if size == 0.0:
-        raise axis.error(f"found the axis 0 0 0 of joint '{shown(joint)}', expected a direction such as 0 0 1", "xyz")
-    return values / size
-
-
-def _read_limits(node: XmlNode, joint: str, type: str, reading: UrdfReading) -> tuple[float, float]:
-    """Least and greatest value [rad | m], ±inf where there is none."""
-    limit = _single(node, "limit", joint, reading)
-    given = [word for word in ("lower", "upper") if limit is not None and word in limit.attributes]
-    if limit is None or not given:
-        if type != "continuous" and node.first("mimic") is None:
-            reading.unlimited.append((joint, limit or node))
-        return -np.inf, np.inf
-    lower, upper = (number_of(limit, word, 0.0) for word in ("lower", "upper"))
-    if type == "continuous":
-        if lower != upper:  # 0 and 0 stand there as a rule, and mean nothing
-            reading.turning.append((joint, limit))
-        return -np.inf, np.inf
-    if len(given) == 1:
-        reading.halved.append((joint, limit))
-    if lower > upper:
-        raise limit.error(
-            f"found the lower limit {lower:g} above the upper {upper:g} of joint '{shown(joint)}', expected the lower "
-            "first; without lower and upper there is no limit",
-            given[0],
-        )
-    return (lower if lower > -FARTHEST else -np.inf), (upper if upper < FARTHEST else np.inf)
-
-
 def _read_mimics(joints: Sequence[UrdfJoint], reading: UrdfReading) -> list[Coupling]:
     """What joints follow others; mistakes are kept, circles among them."""
     known = {joint.name: joint for joint in joints}
     couplings: dict[str, Coupling] = {}
     for joint in joints:
-        mimic = _single(joint.node, "mimic", joint.name, reading) if joint.moves else None
+        mimic = single_child(joint.node, "mimic", joint.name, reading) if joint.moves else None
         if mimic is None:
             continue
         leader = mimic.attributes.get("joint", "")
-        factor, offset = reading.faults.attempt((1.0, 0.0), _factors, mimic)
+        factor, offset = reading.faults.attempt((1.0, 0.0), mimic_factors, mimic)
         if leader in known and known[leader].kind not in FREE:
             ratios = ((leader, factor),) if known[leader].moves else ()
             couplings[joint.name] = Coupling(joint.name, ratios, offset)
@@ -353,15 +176,6 @@ def _read_mimics(joints: Sequence[UrdfJoint], reading: UrdfReading) -> list[Coup
             mimic.error(f"found mimics that go round in a circle, {names}, expected one joint that moves by itself")
         )
     return [*couplings.values()]
-
-
-def _factors(mimic: XmlNode) -> tuple[float, float]:
-    """Multiplier and offset."""
-    values = number_of(mimic, "multiplier", 1.0), number_of(mimic, "offset", 0.0)
-    for name, value in zip(("multiplier", "offset"), values, strict=True):
-        if abs(value) > FARTHEST:
-            raise mimic.error(f"found the {name} {value:g}, expected one up to {FARTHEST:g}", name)
-    return values
 
 
 def _circle_of_mimics(couplings: Mapping[str, Coupling]) -> list[str]:
@@ -394,8 +208,8 @@ def _from_root(
     roots = [name for name in links if name not in below]
     if len(roots) > 1:
         raise links[roots[1]].error(
-            f"found {len(roots)} links without a parent, {_listed(roots)}, expected one root: a joint leads to every "
-            "other link"
+            f"found {len(roots)} links without a parent, {listed_names(roots)}, expected one root: a joint leads to "
+            "every other link"
         )
     reached = set(roots)
     waiting = list(roots)
@@ -465,9 +279,3 @@ def _graph_joint(joint: UrdfJoint, row: int, numbers: Mapping[str, int]) -> Grap
         limits=joint.limits,
         row=row,
     )
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Names in a line."""
-    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-    return ", ".join(shown(name) for name in names[:MOST_NAMED]) + more

@@ -22,8 +22,8 @@ from robokin.formats.xacro_scope import XacroProperty, XacroScope, XacroTexts
 from robokin.formats.xml_tree import MAX_XML_BYTES, XmlNode, XmlText, read_xml
 from robokin.model.tree import Tree
 
-MOST_STEPS = 100_000
-"""Elements that are expanded, those that conditions drop included."""
+MOST_STEPS = 40_000
+"""Elements that are expanded and parameters that are set; a dual arm takes 1,000."""
 
 MOST_INCLUDES = 500
 DEEPEST_CALL = 150
@@ -79,6 +79,7 @@ class XacroExpansion:
             {"find": self.find, "arg": self.argument, "optenv": self.environment, "dirname": self.folder}
         )
         self.steps = self.includes = self.depth = 0
+        self.parameters: dict[XmlNode, list[tuple[str, str, tuple[str, str] | None]]] = {}
         self.open_files: list[str] = [str(main.resolve())]
 
     def robot(self, root: XmlNode) -> XmlNode:
@@ -107,7 +108,7 @@ class XacroExpansion:
         """What a node becomes: itself with its attributes evaluated, or what a word of xacro makes of it."""
         self.steps += 1
         if self.steps > MOST_STEPS:
-            raise node.error(f"found more than {MOST_STEPS} elements in all, expected those of a robot")
+            raise node.error(f"found more than {MOST_STEPS} elements and parameters in all, expected a robot")
         if self.depth >= DEEPEST_CALL:
             raise node.error(f"found macros and elements nested more than {DEEPEST_CALL} deep, expected fewer")
         self.depth += 1
@@ -148,7 +149,9 @@ class XacroExpansion:
         self.asked.add(name)
         if name not in self.arguments:
             hint = did_you_mean(name, self.arguments)
-            raise ExpressionError(f"found no value of the argument '{shown(name)}'{hint or ', expected --arg'}")
+            raise ExpressionError(
+                f"found no value of the argument '{shown(name)}'{hint or ', expected one, or a default'}"
+            )
         return self.arguments[name]
 
     def environment(self, rest: str, node: XmlNode) -> str:
@@ -177,7 +180,7 @@ class XacroExpansion:
         where = node.attributes.get("scope", "")
         place = scope.outermost() if where == "global" else (scope.outer or scope) if where == "parent" else scope
         attribute = "value" if "value" in node.attributes else "default"
-        if attribute == "default" and (name in scope.all_names() or scope.block(name) is not None):
+        if attribute == "default" and (scope.has(name) or scope.block(name) is not None):
             return []
         place.forget(name)
         if attribute not in node.attributes:
@@ -194,7 +197,7 @@ class XacroExpansion:
 
     def _names_itself(self, node: XmlNode, attribute: str, name: str) -> bool:
         """Whether a text uses its own name, which then means the value before."""
-        return re.search(rf"\b{name}\b", node.attributes[attribute]) is not None
+        return name in re.findall(r"\w+", node.attributes[attribute])
 
     def condition(self, node: XmlNode, scope: XacroScope) -> list[XmlNode]:
         """`xacro:if` and `xacro:unless`."""
@@ -261,17 +264,25 @@ class XacroExpansion:
             raise node.error(f"found the unknown macro '{shown(name)}'{hint}")
         inner = XacroScope(scope)
         blocks = [block for child in node.children for block in self.expand(child, scope)]
-        for star, parameter, default in _parameters(macro):
+        parameters = self.parameters_of(macro)
+        self.steps += len(parameters)
+        for star, parameter, default in parameters:
             given.pop(parameter, None)
             self._set(inner, macro, node, star, parameter, default, blocks)
         if given:
-            names = [parameter for _, parameter, _ in _parameters(macro)]
+            names = [parameter for _, parameter, _ in parameters]
             wrong = next(iter(given))
             hint = did_you_mean(wrong, names) or f", expected {', '.join(names) or 'none'}"
             raise node.error(f"found the parameter '{shown(wrong)}' of the macro '{shown(name)}'{hint}", wrong)
         if blocks:
             raise blocks[0].error(f"found a block too many for the macro '{shown(name)}', expected none")
         return self.expand_all(macro.children, inner)
+
+    def parameters_of(self, macro: XmlNode) -> list[tuple[str, str, tuple[str, str] | None]]:
+        """A macro's parameters, which are read once."""
+        if macro not in self.parameters:
+            self.parameters[macro] = _parameters(macro)
+        return self.parameters[macro]
 
     def _set(
         self,
@@ -296,7 +307,7 @@ class XacroExpansion:
             value = self.evaluator.value_of(node, name, inner.outer)
         elif default is None:
             raise node.error(f"found <{shown(node.tag)}> without the parameter '{shown(name)}', expected it")
-        elif default[0] and name in inner.outer.all_names():
+        elif default[0] and inner.outer.has(name):
             return
         elif default[0] == "^":
             raise node.error(f"found <{shown(node.tag)}> without the parameter '{shown(name)}', expected it")

@@ -60,6 +60,8 @@ CONSTANTS: dict[str, XacroValue] = {
 ELSEWHERE = ("load_yaml", "load_json", "dict", "list", "tuple", "set", "eval", "exec", "open", "lambda", "for")
 """Names of Python's and xacro's that are refused with a word on what to do."""
 
+WAY_OUT = "nothing of a xacro file is run as Python; make a URDF of it with ROS's own xacro, and give that"
+
 WORDS = {"and", "or", "not", "if", "else"}
 
 
@@ -92,6 +94,8 @@ def evaluate_xacro(text: str, names: XacroNames) -> XacroValue:
         raise ExpressionError(f"found an expression of {len(text)} characters, expected at most {MAX_EXPRESSION}")
     parser = _XacroParser(_pieces(text), names)
     value = parser.value()
+    if parser.pieces[parser.at][1] in ("[", "."):
+        raise ExpressionError("found a part taken of a value, expected numbers, strings and names: " + WAY_OUT)
     if parser.pieces[parser.at][0] != "end":
         raise ExpressionError(f"found '{shown(parser.pieces[parser.at][1])}', expected the end of the expression")
     return value
@@ -216,7 +220,9 @@ class _XacroParser:
             if not self.accept(")"):
                 raise ExpressionError("found no ')', expected the end of the parentheses")
             return result
-        raise ExpressionError(f"found '{shown(text)}', expected a value; lists and dictionaries are not read")
+        raise ExpressionError(
+            f"found '{shown(text)}', expected a value; lists and dictionaries are not read: {WAY_OUT}"
+        )
 
     def name(self, name: str) -> XacroValue:
         value = self.names.lookup(name)
@@ -233,8 +239,7 @@ class _XacroParser:
         if plain not in XACRO_FUNCTIONS:
             if plain in ELSEWHERE or "." in plain:
                 raise ExpressionError(
-                    f"found {shown(name)}(…), expected numbers, strings and functions such as radians(…): nothing of a "
-                    "xacro file is run as Python; make a URDF of it with ROS's own xacro, and give that"
+                    f"found {shown(name)}(…), expected numbers, strings and functions such as radians(…): {WAY_OUT}"
                 )
             hint = did_you_mean(plain, XACRO_FUNCTIONS) or ", expected one such as radians, sin or sqrt"
             raise ExpressionError(f"found the unknown function '{shown(name)}'{hint}")

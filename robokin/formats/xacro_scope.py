@@ -9,8 +9,10 @@ from robokin.errors import DescriptionError, ExpressionError
 from robokin.formats.xacro_expressions import XacroNames, XacroValue, evaluate_xacro, xacro_text, xacro_typed
 from robokin.formats.xml_tree import XmlNode
 
-MOST_TEXT = 1 << 24
-"""Characters of all texts that are computed."""
+MOST_TEXT = 1 << 22
+"""Characters of all texts that are computed, those of expressions counted `EXPRESSION` times; robots take 1e5."""
+
+EXPRESSION = 8
 
 MAX_VALUE = 20_000
 """Characters of one text that is computed."""
@@ -45,6 +47,15 @@ class XacroScope:
             names |= scope.properties.keys() | scope.values.keys()
             scope = scope.outer
         return names
+
+    def has(self, name: str) -> bool:
+        """Whether a value of that name is known here."""
+        scope: XacroScope | None = self
+        while scope is not None:
+            if name in scope.properties or name in scope.values:
+                return True
+            scope = scope.outer
+        return False
 
     def outermost(self) -> XacroScope:
         """The scope of the file."""
@@ -102,6 +113,7 @@ class XacroTexts:
 
     def evaluated(self, text: str, node: XmlNode, scope: XacroScope) -> XacroValue:
         """The value of a text. Raises ExpressionError."""
+        self.spend(len(text), text)
         values: list[XacroValue] = []
         at = 0
         while (start := text.find("$", at)) >= 0:
@@ -123,16 +135,18 @@ class XacroTexts:
         if len(values) == 1:
             return values[0]
         joined = "".join(map(xacro_text, values))
-        self.computed += len(joined)
-        if len(joined) > MAX_VALUE or self.computed > MOST_TEXT:
-            raise ExpressionError("found texts that grow without end, expected those of a robot")
+        self.spend(len(joined), joined)
         return joined
+
+    def spend(self, cost: int, text: str = "") -> None:
+        """Count what is computed. Raises ExpressionError for a long text, and when it is more than a robot takes."""
+        self.computed += cost
+        if len(text) > MAX_VALUE or self.computed > MOST_TEXT:
+            raise ExpressionError("found texts that grow without end, expected those of a robot")
 
     def expression(self, text: str, scope: XacroScope) -> XacroValue:
         """The value of what stands between `${` and `}`."""
-        self.computed += len(text)
-        if self.computed > MOST_TEXT:
-            raise ExpressionError("found expressions without end, expected those of a robot")
+        self.spend(EXPRESSION * len(text))
         return evaluate_xacro(text, XacroNames(scope.all_names, lambda name: self.lookup(name, scope)))
 
     def lookup(self, name: str, scope: XacroScope) -> XacroValue | None:

@@ -137,6 +137,7 @@ def read_xml(data: bytes | str, file: str) -> XmlNode:
     if len(data) > MAX_XML_BYTES:
         raise DescriptionError(f"found a file over {MAX_XML_BYTES >> 20} MiB, expected a description", file, 1, 1)
     text = data.removeprefix("\ufeff") if isinstance(data, str) else _decoded(data, file)
+    text = text.rstrip("\0")  # the end of a text in C, written with it
     start = text.lstrip()  # blank lines before the XML declaration are none of XML's, but files have them
     blank = LINE_END.split(text[: len(text) - len(start)])
     encoded = _without_dashes(start).encode("utf-8", "replace")

@@ -30,12 +30,14 @@ def upright_tool(zero: Array) -> bool:
     return bool(np.hypot(zero[0, 0], zero[1, 0]) < LEVEL)
 
 
-def planar_pose(zero: Array, p: Array, phi: float | None) -> Array:
-    """The pose (4, 4) [m] at p: (2,) x, y [m] in the plane of an arm whose pose at zero (4, 4) is `zero`.
+def planar_pose(zero: Array, p: Array, phi: float | Array | None) -> Array:
+    """Poses (..., 4, 4) [m] at p: (..., 2) x, y [m] in the plane of an arm whose pose at zero (4, 4) is `zero`.
 
-    phi: the angle [rad] of the end effector's x axis to x; None leaves its orientation as it is at zero.
+    phi: the angles (...) [rad] of the end effector's x axis to x; None leaves its orientation as it is at zero.
     """
     R = zero[:3, :3]
     if phi is not None:
-        R = rotation_from_rpy([0.0, 0.0, phi - np.arctan2(zero[1, 0], zero[0, 0])]) @ R
-    return transform(R, np.array([p[0], p[1], zero[2, 3]]))
+        yaw = np.asarray(phi - np.arctan2(zero[1, 0], zero[0, 0]))
+        R = rotation_from_rpy(np.stack([np.zeros_like(yaw), np.zeros_like(yaw), yaw], axis=-1)) @ R
+    height = np.full((*p.shape[:-1], 1), zero[2, 3])
+    return transform(R, np.concatenate([p, height], axis=-1))

@@ -47,8 +47,10 @@ Verdict = Robot | Mechanism | WheeledBase | Tree | InputError
 """What a description describes, or what is wrong with it."""
 
 
-def described_record(entry: Robot | Mechanism | WheeledBase, units: Units) -> dict[str, Any]:
+def described_record(entry: Robot | Mechanism | WheeledBase | Tree, units: Units) -> dict[str, Any]:
     """The document of `robokin show` about whatever a description describes."""
+    if isinstance(entry, Tree):
+        return links_record(entry, units)
     if isinstance(entry, Robot):
         return robot_record(entry, units)
     if isinstance(entry, Mechanism):
@@ -183,6 +185,48 @@ def mechanism_record(mechanism: Mechanism, units: Units) -> dict[str, Any]:
             }
             for joint in mechanism.joints
         ],
+    }
+
+
+def links_record(tree: Tree, units: Units) -> dict[str, Any]:
+    """A tree's joints with the links that they join, and its tips, in the given units."""
+    graph = tree.graph
+    variables = {number: place for place, number in enumerate(graph.variables, start=1)}
+    coupled = {coupling.joint: coupling for coupling in graph.couplings}
+
+    def hangs(name: str) -> list[dict[str, Any]]:
+        ratios = coupled[name].ratios if name in coupled else ()
+        return [{"joint": other, "ratio": ratio} for other, ratio in ratios]
+
+    joints: list[dict[str, Any]] = []
+    for number in graph.moving:
+        joint = graph.joints[number]
+        factor = units.metres if joint.type == "prismatic" else units.radians
+        limits = None if np.isinf(joint.limits).all() else joint.limits
+        joints.append(
+            {
+                "i": len(joints) + 1,
+                "name": joint.name,
+                "type": str(joint.type),
+                "variable": f"q{variables[number]}" if number in variables else None,
+                "parent": graph.links[joint.parent],
+                "child": graph.links[joint.child],
+                "limits": None if limits is None else in_units(np.array(limits), factor).tolist(),
+                "follows": hangs(joint.name),
+            }
+        )
+    factors = joint_factors(tree, units)
+    return {
+        **envelope("robot", tree.id, units),
+        "name": tree.name,
+        "kind": "tree",
+        "description": tree.description,
+        "source": tree.source,
+        "parameters": dict(tree.parameters),
+        "n": tree.n,
+        "joints": joints,
+        "tips": [{"name": tip.name, "link": graph.links[tip.link]} for tip in graph.tips],
+        "poses": {name: in_units(q, factors).tolist() for name, q in tree.poses.items()},
     }
 
 

@@ -1,4 +1,4 @@
-"""Schemas of `robokin list`, `show` and `validate`."""
+"""Schemas of `robokin list`, `show`, `convert` and `validate`."""
 
 from __future__ import annotations
 
@@ -74,14 +74,29 @@ def validate() -> Schema:
 
 def show() -> Schema:
     """Documents of `robokin show`."""
-    about = {
+    about = _about()
+    variants = {
+        "robot": _robot(about),
+        "tree": _tree(about),
+        "mechanism": _mechanism(about),
+        "wheeled": _base(about),
+    }
+    return documents("show", "What a description describes.", [], **variants)
+
+
+def convert() -> Schema:
+    """Documents of `robokin convert`."""
+    return documents("convert", "A robot, as `show` has it, in the convention asked for.", [], robot=_robot(_about()))
+
+
+def _about() -> dict[str, Schema]:
+    """What is said of everything that can be described."""
+    return {
         "name": text("The name in full."),
         "description": text("What it is, in a line."),
         "source": text("Where the numbers come from."),
         "parameters": PARAMETERS,
     }
-    variants = {"robot": _robot(about), "mechanism": _mechanism(about), "wheeled": _base(about)}
-    return documents("show", "What a description describes.", [], **variants)
 
 
 def _row() -> Schema:
@@ -179,6 +194,39 @@ def _mechanism(about: dict[str, Schema]) -> Schema:
             "output": maybe(text("The link that the others serve."), "where none is named"),
             "grubler": whole("Grübler's count."),
             "joints": items(joint, "The joints."),
+        },
+    )
+
+
+def _tree(about: dict[str, Schema]) -> Schema:
+    other = record(
+        "Another joint that it hangs on.",
+        {"joint": text("Its name."), "ratio": number("To its value, in SI [1, rad/m or m/rad].")},
+    )
+    joint = record(
+        "A joint that moves.",
+        {
+            "i": whole("Its number.", 1),
+            "name": text("Its name."),
+            "type": text("Its type."),
+            "variable": maybe(text("Its variable, such as q1."), "where it follows another joint"),
+            "parent": text("The link before it."),
+            "child": text("The link after it."),
+            "limits": maybe(numbers("Least and greatest value [joint].", 2), "where it has none"),
+            "follows": items(other, "The joints whose values are added to its own, or are its value."),
+        },
+    )
+    tip = record("A tip.", {"name": text("Its name."), "link": text("The link that it is on.")})
+    return record(
+        "A tree of links.",
+        {
+            **head("robot", text("The tree, as `id`.")),
+            **about,
+            "kind": {"const": "tree", "description": "What it is."},
+            "n": whole("Joint variables N.", 0),
+            "joints": items(joint, "The joints that move."),
+            "tips": items(tip, "The frames that are asked for."),
+            "poses": mapping(numbers("Joint values [joint]."), "Named configurations."),
         },
     )
 

@@ -10,6 +10,7 @@ from robokin.records.schema_words import Schema
 HOMES = {
     "list": "description_schemas.list_",
     "show": "description_schemas.show",
+    "convert": "description_schemas.convert",
     "validate": "description_schemas.validate",
     "fk": "pose_schemas.fk",
     "ik": "solution_schemas.ik",

@@ -18,10 +18,10 @@ from robokin.records.self_motion_records import family_record
 from robokin.units import Units
 
 RECORD_KEYS = (
-    "schema", "robot", "units", "target", "hold", "reachable", "complete", "basis", "certificate", "counts", "families",
-    "method", "reason", "solutions", "nearest", "explanation",
+    "schema", "robot", "id", "units", "target", "hold", "reachable", "complete", "basis", "certificate", "counts",
+    "families", "method", "reason", "solutions", "nearest", "explanation",
 )  # fmt: skip
-"""What a document says itself; an `id` of the input takes the place of its own, which `robot` says too."""
+"""What a document says itself."""
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,9 @@ MOST_POSES = 40
 
 def description_table(record: dict[str, Any]) -> bytes:
     """The page about what a description describes, from its document."""
-    return {"robot": robot_table, "mechanism": mechanism_table, "wheeled": wheel_table}[record["kind"]](record)
+    return {"robot": robot_table, "tree": tree_table, "mechanism": mechanism_table, "wheeled": wheel_table}[
+        record["kind"]
+    ](record)
 
 
 def robot_table(record: dict[str, Any]) -> bytes:
@@ -34,10 +36,10 @@ def robot_table(record: dict[str, Any]) -> bytes:
                          no_wrap=name not in ("joint", "origin"))  # fmt: skip
     angle = record["units"]["angle"]
     for row in record["rows"]:
-        cells = [_variable(row, name, angle) for name in ("origin", "axis")] if frames else []
+        cells = [variable_cell(row, name, angle) for name in ("origin", "axis")] if frames else []
         if not frames:
             order = ("alpha", "a", "theta", "d") if modified else ("theta", "d", "a", "alpha")
-            cells = [_variable(row, name, angle) for name in order]
+            cells = [variable_cell(row, name, angle) for name in order]
         limits = "" if row["limits"] is None else show_range(*row["limits"])
         drawn.add_row(str(row["i"]), *([row["name"]] if named else []), row["type"], *cells, limits)
     units = record["units"]
@@ -62,13 +64,36 @@ def robot_table(record: dict[str, Any]) -> bytes:
     if len(poses) > MOST_POSES:
         entries.append(("", f"and {len(poses) - MOST_POSES} more poses, which --json has"))
     for name in ("base", "tool"):
-        text = _transform_text(record[name], angle)
+        text = transform_in_short(record[name], angle)
         if text:
             entries.append((name, text))
     entries.append(("at zero", _zero_text(record["at_zero"], units["length"])))
     entries += [("about", record["description"])] if record["description"] else []
     entries += [("source", record["source"])] if record["source"] else []
     rest = f"{record['convention']} convention, lengths in {units['length']}, angles in {units['angle']}"
+    return render(heading(record["name"], rest), "", drawn, "", pairs(entries))
+
+
+def tree_table(record: dict[str, Any]) -> bytes:
+    """A tree's joints with the links that they join, and its tips."""
+    drawn = table()
+    for name in ("", "joint", "type", "on", "limits", "follows"):
+        drawn.add_column(name, justify="right" if name in ("", "limits") else "left", no_wrap=name in ("", "type"))
+    for joint in record["joints"]:
+        limits = "" if joint["limits"] is None else show_range(*joint["limits"])
+        others = " + ".join(f"{show(other['ratio'])} {other['joint']}" for other in joint["follows"])
+        row = (joint["variable"] or "", joint["name"], joint["type"], joint["parent"], limits, others)
+        drawn.add_row(*row)
+    units, poses = record["units"], list(record["poses"])
+    entries = [("joints N", str(record["n"])), ("tips", ", ".join(tip["name"] for tip in record["tips"]))]
+    if record["parameters"]:
+        listed = ", ".join(f"{name} = {show(value)}" for name, value in record["parameters"].items())
+        entries.append(("parameters", listed))
+    entries += [("poses", ", ".join(poses[:MOST_POSES]))] if poses else []
+    entries.append(("one tip", "its table and all else: --tip with its name"))
+    entries += [("about", record["description"])] if record["description"] else []
+    entries += [("source", record["source"])] if record["source"] else []
+    rest = f"tree of links, lengths in {units['length']}, angles in {units['angle']}"
     return render(heading(record["name"], rest), "", drawn, "", pairs(entries))
 
 
@@ -81,16 +106,19 @@ def _zero_text(zero: dict[str, Any], unit: str) -> str:
     return f"tool frame at {vector(zero['position'])} {unit}, z along {zero['z_along'] or vector(zero['z'])}"
 
 
-def _variable(row: dict[str, Any], name: str, angle: str) -> str:
+def variable_cell(row: dict[str, Any], name: str, angle: str) -> str:
     """A cell as a lecture prints it: the variable with its offset, or the constant."""
     value = row[name]
     if name == "origin":
-        return _transform_text(value, angle) or "identity"
+        return transform_in_short(value, angle) or "identity"
     if name == "axis":
         axis = "" if value is None else " ".join(show(part) for part in value)
-        return f"{axis}  for -{row['variable']}" if row["sense"] == -1 else axis
-    if value is not None:
-        return show(value)
+        return f"{axis}  for {_shifted(row)}" if row["sense"] == -1 or row["offset"] else axis
+    return _shifted(row) if value is None else show(value)
+
+
+def _shifted(row: dict[str, Any]) -> str:
+    """A row's variable with its sense and its offset."""
     offset = row["offset"]
     if row["sense"] == -1:
         return f"{show(offset)} - {row['variable']}" if offset else f"-{row['variable']}"
@@ -99,7 +127,7 @@ def _variable(row: dict[str, Any], name: str, angle: str) -> str:
     return f"{row['variable']} {'+' if offset > 0 else '-'} {show(abs(offset))}"
 
 
-def _transform_text(matrix: list[list[float]], angle: str) -> str:
+def transform_in_short(matrix: list[list[float]], angle: str) -> str:
     """A constant transform in short, its angles in the unit; "" for the identity."""
     T = np.array(matrix)
     parts = []

@@ -34,8 +34,9 @@ def taken_by(kind: str, n: int) -> list[str]:
     if kind == "csv":
         values = [f"sigma{i}" for i in range(1, n + 1)]
         return [*_columns(n), "rank", *values, "manipulability", "condition"]
-    return ["robot", "units", "jacobian_units", "q", "frame", "task", "jacobian", "rank", "full_rank", "size",
-            "singular_values", "manipulability", "condition", "singular_direction", "null_space_joints"]  # fmt: skip
+    return ["schema", "robot", "id", "units", "jacobian_units", "q", "frame", "task", "jacobian", "rank", "full_rank",
+            "size", "singular_values", "manipulability", "condition", "singular_direction",
+            "null_space_joints"]  # fmt: skip
 
 
 @dataclass

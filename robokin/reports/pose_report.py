@@ -19,8 +19,8 @@ from robokin.tables.orientations import orientation, pose_columns, pose_table
 from robokin.tables.written_rows import csv_header, csv_rows, page
 from robokin.units import Units
 
-RECORD_KEYS = ("robot", "units", "q", "within_limits", "pose", "frames", "schema")
-"""What a JSON document says itself; an `id` of the input takes the place of its own, which `robot` says too."""
+RECORD_KEYS = ("schema", "robot", "id", "units", "q", "within_limits", "pose", "frames")
+"""What a JSON document says itself."""
 
 
 def csv_columns(robot: Robot, orientation: str | None) -> list[str]:

@@ -19,7 +19,7 @@ from robokin.tables.orientations import pose_columns, pose_table
 from robokin.tables.written_rows import csv_header, csv_rows, page
 from robokin.units import Units
 
-TIP_KEYS = ("robot", "units", "q", "within_limits", "tips", "schema")
+TIP_KEYS = ("schema", "robot", "id", "units", "q", "within_limits", "tips")
 """What a JSON document says itself."""
 
 LONGEST = 24

@@ -23,11 +23,18 @@ WRITTEN_BY_IK = ("target", "solution", "branch", "within_limits", "position_erro
 """Beside joint values; where the first two stand together, the table is one of `robokin ik`."""
 
 
+ID, INPUT = "id", "input_"
+"""A number of the user's, and what stands before it in a document, which has an `id` of its own: what it is about."""
+
+
 class Carried:
     """Cells that go through, in the order of the rows: the reader puts them in, the writer takes them out."""
 
     def __init__(self, taken: Collection[str], say: Say, *, wanted: bool = True) -> None:
-        """`taken` are the names that the output has itself; `wanted` tells whether anything goes through."""
+        """`taken` are the names that the output has itself; `wanted` tells whether anything goes through.
+
+        An `id` where the output has one is called `input_id` in it.
+        """
         self.taken, self.say, self.wanted = frozenset(taken), say, wanted
         self.names: tuple[str, ...] = ()
         self.typed = False
@@ -40,18 +47,30 @@ class Carried:
             return []
         by_ik = WRITTEN_BY_IK if {"target", "solution"} <= {*headings} else ()
         places: list[int] = []
-        seen = set(self.taken)
-        for i, name in enumerate(headings):
-            if i in used or name in by_ik or not name:
+        seen = {*self.taken}
+        names: list[str] = []
+        for i, heading in enumerate(headings):
+            if i in used or heading in by_ik or not heading:
                 continue
+            name = self.named(heading, headings)
             if name in seen:
                 if not OWN.fullmatch(name):
-                    self.say(f"the column '{shown(name)}' is left out, since the output has one of that name")
+                    self.say(f"the column '{shown(heading)}' is left out, since the output has one of that name")
                 continue
             places.append(i)
+            names.append(name)
             seen.add(name)
-        self.names = tuple(headings[i] for i in places)
+        self.names = tuple(names)
         return places
+
+    def named(self, heading: str, headings: Sequence[str]) -> str:
+        """What a column is called in the output."""
+        if heading != ID or ID not in self.taken:
+            return heading
+        name = INPUT + ID
+        while name in headings:
+            name = INPUT + name
+        return name
 
     def put(self, rows: Iterable[Sequence[Any]]) -> None:
         """The cells of some rows."""
@@ -72,7 +91,7 @@ class Carried:
         """A JSON document behind the next row's cells; those of a CSV are numbers where they are plain decimal ones."""
         values = self._next() if self.names else ()
         own = dict(zip(self.names, values if self.typed else map(_value, values), strict=True))
-        return own | {key: value for key, value in record.items() if key not in own}
+        return own | record
 
     def before(self, head: bytes, lines: bytes, cells: Iterable[Sequence[str]] | None = None) -> bytes:
         """A heading and lines of CSV, each behind its cells: those that are given, or the next ones."""
@@ -89,6 +108,11 @@ class Carried:
 
 OWN = re.compile(r"q\d+|[xyz]|roll|pitch|yaw|q[wxyz]|phi|theta|psi|r[xyz]|[ABCWPR]|m[1-4][1-4]")
 """Columns of joint values and poses: those that are computed take the place of those that were read."""
+
+
+def given_back(names: Collection[str]) -> str:
+    """Which of a document's own names was an `id` before it went through; "" for none."""
+    return max((name for name in names if re.fullmatch(f"({INPUT})+{ID}", name)), key=len, default="")
 
 
 def nothing() -> Carried:

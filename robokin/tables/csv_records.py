@@ -117,8 +117,10 @@ class RecordReader(TextSource):
     def _whole(self, text: str) -> list[str]:
         """The lines of the first record: quoted cells may be on further lines."""
         lines, more = [text], self._lines_from([])
-        while sum(line.count('"') for line in lines) % 2:
+        quotes = text.count('"')
+        while quotes % 2:
             lines.append(next(more))
+            quotes += lines[-1].count('"')
         return lines
 
     def _separator_of(self, text: str, line: int) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import ExpressionError, InputError, counted, or_list, shown
-from robokin.tables.carried import Carried
+from robokin.tables.carried import ID, Carried, given_back
 from robokin.tables.json_documents import DocumentReader
 from robokin.tables.number_cells import number_in
 from robokin.tables.text_source import Say
@@ -114,28 +114,33 @@ class Passing:
         self.carried = carried
         self.begun = False
         self.known: set[str] = set()
+        self.passed: list[str] = []
+        """The keys of what goes through."""
 
     def add(self, document: dict[str, Any], used: Sequence[str], count: int) -> None:
         """Hand on what is not understood of a document, once for each of its rows."""
         if not self.carried.wanted:
             return
         more = {name: value for name, value in document.items() if name not in used and not _written(name, document)}
+        if _written(ID, document) and (before := given_back(more)):
+            more = {ID if name == before else name: value for name, value in more.items()}
         if not self.begun:
             self.begun = True
-            self.carried.choose(list(more), ())
+            keys = list(more)
+            self.passed = [keys[i] for i in self.carried.choose(keys, ())]
             self.carried.typed = True
             self.known = {*more}
         new = [name for name in more if name not in self.known]
         if new:
             self.known |= {*new}
             self.carried.say(f"the key '{shown(new[0])}' is left out, since the first document has none of that name")
-        if self.carried.names:
-            self.carried.put([[more.get(name) for name in self.carried.names]] * count)
+        if self.passed:
+            self.carried.put([[more.get(name) for name in self.passed]] * count)
 
 
 def _written(name: str, document: dict[str, Any]) -> bool:
     """Whether a key is one that `fk` or `ik` wrote."""
-    return name in WRITTEN or (name == "id" and "robot" in document and document["id"] == document["robot"])
+    return name in WRITTEN or (name == ID and "robot" in document and document.get(ID) == document["robot"])
 
 
 def _number(value: Any, units: Units, angle: bool) -> float:

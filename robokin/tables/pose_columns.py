@@ -9,6 +9,7 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.errors import InputError, shown
 from robokin.formats.printed_matrices import pose_from_matrix
+from robokin.kinematics.flat_arm import planar_pose, upright_tool
 from robokin.spatial import nearest_rotation, rotation_error, transform
 from robokin.spatial.rotations import DIGITS_LOST
 from robokin.spatial.transforms import FARTHEST
@@ -23,6 +24,12 @@ CLEAN = 1e-12
 ORIGIN = tuple((axis, f"p{axis}", f"pos_{axis}", f"position_{axis}") for axis in "xyz")
 
 POSITION = Way(ORIGIN, "lll", kind="position")
+
+PLANAR = Way((*ORIGIN[:2], ("phi",)), "lla", kind="planar")
+"""A target of an arm that moves in the plane of x and y: the place, and the angle of the tool's x axis to x."""
+
+PLANE = Way(ORIGIN[:2], "ll", kind="plane")
+"""The place alone."""
 
 MATRIX_WAY = Way(tuple((name,) for name in MATRIX), "uuuluuuluuuluuuu", kind="matrix")
 
@@ -47,6 +54,11 @@ ALLOWED = (
     "or x, y, z alone, or m11 to m44"
 )
 
+ALLOWED_IN_PLANE = ", or x, y, phi of a planar arm, or x, y alone"
+
+PLACES = (POSITION.kind, PLANE.kind)
+"""Ways that leave the orientation open."""
+
 SEVEN = (
     "found 7 values without a header, which do not say whether the quaternion begins or ends with w: expected a header "
     "(x,y,z,qw,qx,qy,qz in any order), or --as quaternion (w, x, y, z) or --as quaternion-xyzw (x, y, z, w)"
@@ -54,13 +66,18 @@ SEVEN = (
 
 
 class PoseColumns(Wanted):
-    """The columns of a pose, or of a position alone; `kind` is what --as says, or None."""
+    """The columns of a pose, or of a position alone; `kind` is what --as says, or None.
+
+    `plane` is the pose (4, 4) [m] at zero of an arm that moves in the plane of x and y, whose targets may be x, y, phi
+    or x, y; None for other arms.
+    """
 
     key = "matrix"
 
-    def __init__(self, units: Units, kind: str | None) -> None:
-        self.units, self.kind = units, kind
+    def __init__(self, units: Units, kind: str | None, plane: Array | None = None) -> None:
+        self.units, self.kind, self.plane = units, kind, plane
         self.what = "a pose"
+        self.allowed = ALLOWED + (ALLOWED_IN_PLANE if plane is not None else "")
 
     def headed(self, headings: Sequence[str]) -> FoundColumns:
         """Where the columns stand below some headings. Raises InputError that lists what is allowed."""
@@ -70,13 +87,32 @@ class PoseColumns(Wanted):
             return found
         if self.kind is not None:
             raise refused(headings, f"{', '.join(WAYS[self.kind].names)}, as --as {self.kind} says")
+        found = self.in_plane(headings)
+        if found is not None:
+            return found
         for kind in ORDER:
             turned = Way(WAYS[kind].columns[0 if kind == "matrix" else 3 :], "")
             if some := partial(turned, headings):
-                raise refused(headings, f"with '{shown(some[0])}' also the others of its pose: {ALLOWED}")
+                raise refused(headings, f"with '{shown(some[0])}' also the others of its pose: {self.allowed}")
         found = find([POSITION], headings, self.units)
         if found is None:
-            raise refused(headings, ALLOWED)
+            raise refused(headings, self.allowed)
+        return found
+
+    def in_plane(self, headings: Sequence[str]) -> FoundColumns | None:
+        """Where x, y, phi or x, y stand; None where there is more of a pose, or the arm does not move in the plane.
+
+        Raises InputError for a phi that the arm's tool does not have.
+        """
+        turned = {names for way in WAYS.values() for names in way.columns if names not in PLANAR.columns}
+        if self.plane is None or partial(Way((*turned,), ""), headings):
+            return None
+        way = PLANAR if partial(Way(PLANAR.columns[2:], ""), headings) else PLANE
+        found = find([way], headings, self.units)
+        if found is not None and way is PLANAR and upright_tool(self.plane):
+            phi = headings[found.places[2]]
+            said = f"found the column '{shown(phi)}', while the x axis of the tool frame is upright"
+            raise InputError(f"{said}, expected x, y alone, or x, y, z, roll, pitch, yaw")
         return found
 
     def bare(self, count: int) -> Way:
@@ -85,6 +121,8 @@ class PoseColumns(Wanted):
             raise InputError(SEVEN)
         kind = self.kind or BY_COUNT.get(count, "rpy")
         way = POSITION if kind == "position" else WAYS[kind]
+        if count == 2 and self.plane is not None and self.kind is None:
+            way = PLANE
         self.what = "the 16 elements of a matrix, row by row" if kind == "matrix" else ", ".join(way.names)
         return way
 
@@ -97,8 +135,11 @@ class BadRowError(Exception):
         self.row, self.sentence = row, sentence
 
 
-def poses_from_rows(rows: Array, kind: str, units: Units) -> Array:
-    """Poses (m, 4, 4) [m] from rows (m, k) in the units. Raises BadRowError for the first that is none."""
+def poses_from_rows(rows: Array, kind: str, units: Units, plane: Array | None = None) -> Array:
+    """Poses (m, 4, 4) [m] from rows (m, k) in the units. Raises BadRowError for the first that is none.
+
+    `plane` is as in `PoseColumns`.
+    """
     finite = np.isfinite(rows).all(axis=1)
     if not finite.all():
         raise BadRowError(int(np.argmin(finite)), "found a number that is not finite, expected finite numbers")
@@ -106,6 +147,9 @@ def poses_from_rows(rows: Array, kind: str, units: Units) -> Array:
         return _poses_from_matrices(rows.reshape(-1, 4, 4), units)
     if kind == POSITION.kind:
         return near_enough(transform(np.eye(3), rows * units.metres), units)
+    if plane is not None and kind in (PLANAR.kind, PLANE.kind):
+        phi = rows[:, 2] * units.radians if kind == PLANAR.kind else None
+        return near_enough(planar_pose(plane, rows[:, :2] * units.metres, phi), units)
     way, values = ORIENTATIONS[kind], rows[:, 3:]
     if way.angles:
         R = way.rotation(values * units.radians)

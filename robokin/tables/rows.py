@@ -12,10 +12,13 @@ from typing import Any
 
 from robokin.arrays import Array
 from robokin.errors import InputError
-from robokin.files import open_input, wait_for
+from robokin.files import HeededStream, open_input, wait_for
 from robokin.tables.carried import Carried
 from robokin.tables.text_source import BYTE_ORDER_MARK, ROWS, Say
 from robokin.tables.wanted_columns import Wanted
+
+MAGIC = b"\x93NUMPY"
+"""What an array begins with."""
 
 
 def kind_of_stream(stream: Any, name: str) -> tuple[str, Any]:
@@ -24,8 +27,8 @@ def kind_of_stream(stream: Any, name: str) -> tuple[str, Any]:
     wait_for(stream)
     head = bytes(buffered.peek(8))
     ending = Path(name).suffix.lower()
-    if ending == ".npy" or head.startswith(b"\x93NUMPY"):
-        return "npy", buffered
+    if ending == ".npy" or (head and MAGIC.startswith(head[: len(MAGIC)])):  # of a pipe less may have come
+        return "npy", buffered if buffered.seekable() else HeededStream(buffered)
     brace = head.removeprefix(BYTE_ORDER_MARK).lstrip()[:1] in (b"{", b"[")
     return "json" if ending in (".jsonl", ".json") or (brace and ending != ".csv") else "csv", buffered
 

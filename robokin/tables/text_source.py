@@ -14,6 +14,9 @@ CHUNK = 1 << 18
 MAX_ROW = 1 << 20
 """Bytes of a row: a longer one is no row of numbers."""
 
+MAX_NOTHING = 1 << 22
+"""Bytes of blank lines and comments on end: a stream of more may have no end."""
+
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 """What some editors put before UTF-8."""
 
@@ -47,6 +50,7 @@ class TextSource:
         """Blocks of whole lines, as they come. A line ends with LF, CR LF or CR, the last one perhaps with nothing."""
         kept = b""
         first = True
+        nothing = 0
         while True:
             if not first:  # where the stream was looked at, its buffer has the first bytes
                 wait_for(self.stream)
@@ -61,14 +65,21 @@ class TextSource:
                 if len(kept) > MAX_ROW:
                     raise self.error(self.line + 1, f"longer than {MAX_ROW} bytes, expected a row")
                 continue
-            yield kept + chunk[:cut]
-            kept = chunk[cut:]
+            block, kept = kept + chunk[:cut], chunk[cut:]
+            nothing = nothing + len(block) if says_nothing(block) else 0
+            if nothing > MAX_NOTHING:
+                said = f"found more than {MAX_NOTHING} bytes of blank lines and comments"
+                raise self.error(self.line + 1, f"{said}, expected rows")
+            yield block
         if kept:
             yield kept
 
     def _beginning(self, chunk: bytes) -> bytes:
         """The first bytes without a byte order mark. Raises InputError for what is no UTF-8 by its first bytes."""
-        while len(chunk) < len(BYTE_ORDER_MARK) and (more := self.stream.read1(CHUNK)):
+        while len(chunk) < len(BYTE_ORDER_MARK):
+            wait_for(self.stream)
+            if not (more := self.stream.read1(CHUNK)):
+                break
             chunk += more
         if chunk.startswith(UTF_16):
             raise InputError(f"{self.name}: found text in UTF-16, expected UTF-8 (in Excel: save as CSV UTF-8)")
@@ -87,3 +98,10 @@ class TextSource:
                 self.latin = True
                 self.say(f"{self.name}, line {number}: not UTF-8, read as Latin-1 (Windows-1252)")
             return line.decode("cp1252", errors="replace")
+
+
+def says_nothing(block: bytes) -> bool:
+    """Whether all lines of a block are blank, or comments."""
+    if block[:1].isspace() or block[:1] == b"#":  # what begins with anything else says something
+        return all(not line or line.startswith(b"#") for line in map(bytes.strip, block.splitlines()))
+    return False

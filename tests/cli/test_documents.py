@@ -21,8 +21,9 @@ COMMANDS = [
     ["validate", "puma560", "four-bar", "car", "no/such.yaml", "nothing"],
     ["show", "puma560"], ["show", "puma560-craig"], ["show", "scara-frames"], ["show", "four-bar"], ["show", "car"],
     ["show", "planetary"], ["show", "omni-three"],
+    ["convert", "puma560", "--convention", "modified"], ["convert", "puma560", "--convention", "frames"],
     ["fk", "puma560", "--q", "home"], ["fk", "puma560", "--q", "home", "--frames", "--as", "euler"],
-    ["fk", "human-hand", "--q", "fist"], ["dof", "human-hand"],
+    ["fk", "human-hand", "--q", "fist"], ["dof", "human-hand"], ["show", "human-hand"],
     ["fk", "planar2r", "--q", "1,2", "--q", "3,4"], ["fk", "anthropomorphic", "--symbolic"],
     ["fk", "anthropomorphic", "--symbolic", "--frames", "--numbers"], ["fk", "puma560", "--q", "0,0,0,0,0,999"],
     ["fk", "scara", "--q", "0,0,0,0", "--length", "in", "--angle", "rad", "--as", "matrix"],
@@ -205,6 +206,7 @@ def test_every_key_of_a_schema_is_in_some_document(command, check):
 ORIENTATIONS = {"quaternion-xyzw", "rotvec", "abc", "wpr"}
 ELSEWHERE = {
     ("fk", None): ORIENTATIONS,
+    ("show", None): {"joint", "ratio"},  # of couplings, which test_trees has
     ("plot", None): ORIENTATIONS | {"euler"},
     ("workspace", None): {*ORIENTATIONS, "euler", "rpy", "quaternion", "matrix", "pose", "q", "holds", "length_error"},
     ("check", "fk"): {"student", "students", "line", "approach", "matrix", "task", "relative"},

@@ -177,7 +177,7 @@ def test_every_entry_has_an_answer_that_agrees_with_its_file(call, name):
         assert (record["links"], record["redundancy"]) == (entry.n + 1, entry.n - record["total"])
         assert record["holonomic"] == (entry.n >= record["total"])
         return
-    assert record["as_expected"] is not False
+    assert record.get("as_expected") is not False
     table = call("dof", name)
     assert table.status == 0
     assert max(map(len, table.lines)) <= 80

@@ -59,7 +59,7 @@ def test_every_document_and_its_rows_in_other_units(call, name):
     (record,) = call("show", name, "-f", "jsonl", *units).jsonl
     assert record["units"] == {"length": "in", "angle": "rad"}
     table = call("show", name, "-f", "csv", *units).csv
-    rows = record[{"robot": "rows", "mechanism": "joints", "wheeled": "wheels"}[record["kind"]]]
+    rows = record[{"robot": "rows", "tree": "joints", "mechanism": "joints", "wheeled": "wheels"}[record["kind"]]]
     assert table[0] == list(rows[0])
     assert len(table) == len(rows) + 1
     assert all(len(row) == len(table[0]) for row in table)

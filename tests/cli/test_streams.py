@@ -163,6 +163,36 @@ def test_an_older_typer_without_pydantic_reads_and_writes_the_same(call, expecte
 
 # Arrays --------------------------------------------------------------------------------------------------
 
+NOTHING = {"blank": b"\n", "spaces": b" \t\r\n", "comments": b"# nothing\n", "both": b"\n#\n  #\n"}
+
+
+@pytest.mark.parametrize("line", NOTHING)
+@pytest.mark.parametrize("begun", [b"", b"1,2\n", b'{"q": [1, 2]}\n', b"[\n"])
+def test_a_stream_that_goes_on_without_rows_is_refused(call, begun, line):
+    """Such as that of `yes ''`, which has no end."""
+    if begun[:1] in (b"{", b"[") and line in ("comments", "both"):
+        pytest.skip("JSON has no comments")
+    answer = call(
+        "fk", "planar2r", "-i", "-", "-f", "csv", stdin=begun + NOTHING[line] * ((5 << 20) // len(NOTHING[line]))
+    )
+    assert answer.status == 2
+    assert "bytes of blank lines and comments, expected rows" in answer.err
+    assert "Traceback" not in answer.err
+    assert answer.out.count(b"\n") == (2 if begun in (b"1,2\n", b'{"q": [1, 2]}\n') else answer.out.count(b"\n"))
+
+
+def test_many_blank_lines_between_rows_are_passed_over(call):
+    gap = (b" " * 99 + b"\n") * (3 << 13)
+    answer = call("fk", "planar2r", "-i", "-", "-f", "csv", stdin=gap + b"10,20\n" + gap + b"30,40\n" + gap)
+    assert (answer.status, [row[:2] for row in answer.csv[1:]]) == (0, [["10.0", "20.0"], ["30.0", "40.0"]])
+
+
+def test_a_quote_that_opens_before_endless_lines_is_refused_in_time(call):
+    answer = call("fk", "planar2r", "-i", "-", stdin=b'1,"' + b"\n" * (2 << 20))
+    assert answer.status == 2
+    assert "line 1" in answer.err
+
+
 ARRAYS = {
     "float64": np.array(ROWS),
     "float32": np.array(ROWS, dtype=np.float32),

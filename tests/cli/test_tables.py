@@ -177,6 +177,109 @@ def test_other_joint_headers_are_refused_with_what_is_allowed(call):
     )
 
 
+# Targets in the plane -------------------------------------------------------------------------------------
+
+PLANAR_TARGETS = [(0.9, 1.2, 90), (1, 0.8, -30), (0.3, -1.1, 200)]
+IN_PLANE = {
+    "x,y,phi": lambda x, y, phi: f"{x},{y},{phi}",
+    "phi,y,x": lambda x, y, phi: f"{phi},{y},{x}",
+    "X;Y;Phi [rad]": lambda x, y, phi: f"{x};{y};{phi}*pi/180",
+    "x [cm],y [mm],phi": lambda x, y, phi: f"{100 * x},{1000 * y},{phi}",
+}
+
+
+@pytest.mark.parametrize("robot", ["planar2r", "planar3r", "planar3r-brac"])
+@pytest.mark.parametrize("header", IN_PLANE)
+def test_targets_in_the_plane_are_those_of_xy_and_phi(call, robot, header):
+    scale = 30 if robot == "planar3r-brac" else 1
+    targets = [(scale * x, scale * y, phi) for x, y, phi in PLANAR_TARGETS]
+    rows = "\n".join([header, *(IN_PLANE[header](*target) for target in targets)]) + "\n"
+    units = [] if robot != "planar3r-brac" else ["--length", "m"]
+    found = call("ik", robot, "-i", "-", *units, "-f", "jsonl", stdin=rows.encode()).jsonl
+    for (x, y, phi), document in zip(targets, found, strict=True):
+        single = call("ik", robot, f"--xy={x},{y}", f"--phi={phi}", *units, "--json").json
+        assert document["target"]["task"] == single["target"]["task"] == "pose"
+        np.testing.assert_allclose(document["target"]["matrix"], single["target"]["matrix"], rtol=0, atol=1e-12)
+        assert document["reachable"] == single["reachable"]
+        np.testing.assert_allclose(*[[one["q"] for one in each["solutions"]] for each in (document, single)], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"x,y\n1,0.8\n0.3,-1.1\n", b"1,0.8\n0.3,-1.1\n", b"1 0.8\n0.3 -1.1\n", b"[1,0.8]\n[0.3,-1.1]\n",
+        b"[[1,0.8],[0.3,-1.1]]", b"y,x\n0.8,1\n-1.1,0.3\n",
+        b'{"x":1,"y":0.8}\n{"x":0.3,"y":-1.1}\n', b'{"position":[1,0.8]}\n{"position":[0.3,-1.1]}\n',
+    ],
+)  # fmt: skip
+def test_a_place_in_the_plane_is_that_of_xy(call, tmp_path, text):
+    found = call("ik", "planar2r", "-i", "-", "-f", "jsonl", stdin=text).jsonl
+    assert found == [call("ik", "planar2r", f"--xy={place}", "-f", "jsonl").jsonl[0] for place in ("1,0.8", "0.3,-1.1")]
+    path = tmp_path / "places.npy"
+    np.save(path, np.array([[1, 0.8], [0.3, -1.1]]))
+    assert call("ik", "planar2r", "-i", path, "-f", "jsonl").jsonl == found
+
+
+def test_other_columns_go_through_beside_targets_in_the_plane(call):
+    rows = b"id,phi,x,y,time\na,0,1,0.8,0.5\n"
+    answer = call("ik", "planar3r", "-i", "-", "-f", "csv", stdin=rows)
+    assert answer.columns[:3] == ["id", "time", "target"]
+    assert answer.csv[1][:3] == ["a", "0.5", "1"]
+    documents = b'{"id": 3, "x": 1, "y": 0.8, "phi": 0, "time": 2}\n'
+    (first, *_) = call("ik", "planar3r", "-i", "-", "-f", "jsonl", stdin=documents).jsonl
+    assert [*first.items()][:2] == [("input_id", 3), ("time", 2)]
+
+
+def test_three_values_of_a_planar_arm_without_a_header_are_a_position(call):
+    bare = call("ik", "planar2r", "-i", "-", "--json", stdin=b"1,0.8,0\n").json
+    assert bare == call("ik", "planar2r", "-i", "-", "--json", stdin=b"x,y,z\n1,0.8,0\n").json
+    assert bare[0]["target"]["task"] == "position"
+    poses = call("fk", "planar2r", "--q", "10,20", "-f", "csv")
+    assert call("ik", "planar2r", "-i", "-", "-f", "jsonl", stdin=poses.out).jsonl[0]["target"]["task"] == "pose"
+
+
+@pytest.mark.parametrize(
+    ("robot", "text", "fragments"),
+    [
+        ("planar3r", "x,y,z,phi\n1,1,0,1\n", ["line 1", "with 'phi' also", "x, y, phi of a planar arm"]),
+        ("planar3r", "x,y,phi,theta,psi\n1,1,1,1,1\n", ["line 1", "with 'phi' also"]),
+        ("planar3r", "x,y,yaw\n1,1,1\n", ["line 1", "with 'yaw' also"]),
+        ("planar3r", "x,phi\n1,1\n", ["line 1", "with 'phi' also"]),
+        ("planar3r", "x,y,phi,phi\n1,1,1,1\n", ["line 1", "'phi' twice"]),
+        ("planar3r", "x,y,phi [mm]\n1,1,1\n", ["line 1", "unit mm", "deg, rad"]),
+        ("planar3r", "x,y,phi\n1,1,nan\n", ["line 2", "'nan'"]),
+        ("planar3r", "x,y,phi\n0,1,1\n1e300,1,1\n", ["line 3", "too far away"]),
+        ("planar3r", "x,y,phi\n1,1\n", ["line 2", "found 2 values, expected 3"]),
+        ("planar3r", "1,1\n1,1,1\n", ["line 2", "found 3 values, expected 2"]),
+        ("planar3r", '{"position": [1, 1], "rpy": [0, 0, 1]}\n', ["line 1", "found 5 numbers", "expected 6"]),
+        ("planar3r", '{"x": 1, "y": 1}\n{"x": 1, "y": 1, "phi": 3}\n', ["line 2", "task pose"]),
+        ("puma560", "x,y,phi\n1,1,1\n", ["line 1", "with 'phi' also"]),
+        ("puma560", "x,y\n1,1\n", ["line 1", "found the columns x, y, expected"]),
+        ("puma560", "1,1\n", ["line 1", "found 2 values, expected 6"]),
+    ],
+)
+def test_what_is_no_target_in_the_plane(call, robot, text, fragments):
+    refused(call("ik", robot, "-i", "-", stdin=text.encode()), *fragments)
+
+
+def test_as_says_that_a_target_is_a_whole_pose(call, tmp_path):
+    refused(call("ik", "planar3r", "-i", "-", "--as", "rpy", stdin=b"x,y,phi\n1,1,1\n"), "line 1", "as --as rpy says")
+    refused(call("ik", "planar3r", "-i", "-", "--as", "rpy", stdin=b"1,1\n"), "line 1", "found 2 values, expected 6")
+    np.save(tmp_path / "places.npy", np.ones((3, 2)))
+    for words in (["planar3r", "--as", "rpy"], ["puma560"]):
+        refused(call("ik", *words, "-i", tmp_path / "places.npy"), "shape (3, 2)")
+
+
+def test_a_plane_that_is_not_that_of_x_and_y_and_a_tool_that_is_upright(call, tmp_path):
+    path = tmp_path / "arm.yaml"
+    rows = "joints: [{type: R, a: 1}, {type: R, a: 1}]\nunits: {length: m, angle: deg}\n"
+    path.write_text(f"robokin: 1\nname: Upright tool\n{rows}tool: Rot(y, 90)\n")
+    refused(call("ik", path, "-i", "-", stdin=b"x,y,phi\n1,1,0\n"), "line 1", "'phi'", "upright", "x, y alone")
+    assert call("ik", path, "-i", "-", stdin=b"x,y\n1,1\n").status == 0
+    path.write_text(f"robokin: 1\nname: Standing arm\n{rows}base: Rot(x, 90)\n")
+    refused(call("ik", path, "-i", "-", stdin=b"x,y\n1,1\n"), "line 1", "x, y, expected")
+
+
 # Columns that are not understood -------------------------------------------------------------------------
 
 CARRIED = b'time,q2,q1,id,note\n0.10,20,10,007,"a, ""b"""\n0.5,-40,30,#1,ok\n'
@@ -190,8 +293,9 @@ def test_other_columns_go_through_in_front(call):
         ["0.5", "#1", "ok", "30.0", "-40.0"],
     ]
     first, second = call("fk", "planar2r", "-i", "-", "-f", "jsonl", stdin=CARRIED).jsonl
-    assert list(first)[:3] == ["time", "id", "note"]
-    assert (first["time"], first["id"], first["note"]) == (0.1, "007", 'a, "b"')
+    assert list(first)[:6] == ["time", "input_id", "note", "schema", "robot", "id"]
+    assert (first["time"], first["input_id"], first["note"]) == (0.1, "007", 'a, "b"')
+    assert (first["schema"], first["robot"], first["id"]) == (1, "planar2r", "planar2r")
     assert (second["time"], second["q"]) == (0.5, [30.0, -40.0])
     assert call("fk", "planar2r", "-i", "-", "--json", stdin=CARRIED).json == [first, second]
     assert call("fk", "planar2r", "-i", "-", stdin=CARRIED).status == 0
@@ -220,11 +324,63 @@ def test_each_solution_of_a_target_has_its_cells(call):
     assert [row[:3] for row in answer.csv[1:]] == [
         ["a", "1", "1"], ["a", "1", "2"], ["b", "2", "0"], ["c", "3", "1"], ["c", "3", "2"],
     ]  # fmt: skip
-    assert [document["id"] for document in call("ik", "planar2r", "-i", "-", "--json", stdin=rows).json] == [
-        "a",
-        "b",
-        "c",
-    ]
+    documents = call("ik", "planar2r", "-i", "-", "--json", stdin=rows).json
+    assert [document["input_id"] for document in documents] == ["a", "b", "c"]
+    assert {document["id"] for document in documents} == {"planar2r"}
+
+
+COMMANDS_OF_ROWS = ["fk", "ik", "jacobian"]
+
+
+@pytest.mark.parametrize("command", COMMANDS_OF_ROWS)
+def test_a_document_keeps_its_own_keys_beside_those_of_the_input(call, command):
+    """Whatever the columns are called: what a document says of itself is what it says without them."""
+    values = b"1,0.8,0" if command == "ik" else b"10,20"
+    names = b"x,y,z" if command == "ik" else b"q1,q2"
+    (plain,) = call(command, "planar2r", "-i", "-", "-f", "jsonl", stdin=names + b"\n" + values + b"\n").jsonl
+    own = [name for name in plain if name not in ("q", "pose")]
+    rows = ",".join([*own, names.decode()]) + "\n" + "7," * len(own) + values.decode() + "\n"
+    answer = call(command, "planar2r", "-i", "-", "-f", "jsonl", stdin=rows.encode())
+    assert answer.jsonl == [{"input_id": 7} | plain]
+    left_out = [line for line in answer.err.splitlines() if "is left out" in line]
+    assert len(left_out) == len(own) - 1
+
+
+@pytest.mark.parametrize(
+    ("header", "keys"),
+    [
+        ("id", ["input_id"]),
+        ("id,input_id", ["input_input_id", "input_id"]),
+        ("input_id,id,time", ["input_id", "input_input_id", "time"]),
+        ("input_id", ["input_id"]),
+        ("id,input_id,input_input_id", ["input_input_input_id", "input_id", "input_input_id"]),
+    ],
+)
+@pytest.mark.parametrize("form", ["json", "jsonl"])
+def test_an_id_has_another_name_in_documents_and_its_own_behind_them(call, header, keys, form):
+    cells = [str(i) for i in range(5, 5 + len(keys))]
+    rows = f"{header},q1,q2\n{','.join(cells)},10,20\n{','.join(cells)},30,40\n".encode()
+    documents = call("fk", "planar2r", "-i", "-", "-f", form, stdin=rows)
+    first = (documents.json if form == "json" else documents.jsonl)[0]
+    assert [(name, str(first[name])) for name in list(first)[: len(keys)]] == [*zip(keys, cells, strict=True)]
+    again = call("jacobian", "planar2r", "-i", "-", "-f", form, stdin=documents.out)
+    second = (again.json if form == "json" else again.jsonl)[0]
+    assert [*second.items()][: len(keys)] == [*first.items()][: len(keys)]
+    if "id" in header.split(","):
+        table = call("ik", "planar2r", "-i", "-", "-f", "csv", stdin=documents.out)
+        assert table.columns[: len(keys)] == header.split(",")
+        assert table.csv[1][: len(keys)] == cells
+
+
+def test_an_id_of_any_value_of_json_goes_through(call):
+    given = [7, None, "a", {"b": [1]}, "planar2r", True]
+    rows = "".join(json.dumps({"id": value, "q": [10, 20]}) + "\n" for value in given).encode()
+    documents = call("fk", "planar2r", "-i", "-", "-f", "jsonl", stdin=rows)
+    assert [document["input_id"] for document in documents.jsonl] == given
+    again = call("jacobian", "planar2r", "-i", "-", "-f", "jsonl", stdin=documents.out)
+    assert [document["input_id"] for document in again.jsonl] == given
+    older = b'{"id": 7, "schema": 1, "robot": "planar2r", "q": [10, 20]}\n'  # with no id of its own
+    assert call("jacobian", "planar2r", "-i", "-", "-f", "jsonl", stdin=older).jsonl[0]["input_id"] == 7
 
 
 def test_drop_leaves_them_out(call):

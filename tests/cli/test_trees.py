@@ -90,7 +90,6 @@ def test_one_tip_is_a_robot_in_every_command(call, fingers):
 
 def test_where_one_is_meant_of_several_they_are_listed(call, fingers):
     for command in (
-        ["show"],
         ["ik", "--xyz", "1,2,3"],
         ["jacobian", "--q", "1"],
         ["workspace"],
@@ -127,6 +126,19 @@ def test_a_trees_freedoms(call, tmp_path, fingers):
     assert "of 4 freedoms 3 are left" in record["note"]
     validate(record, call("schema", "dof").json)
     assert all(tip["alone"] for tip in call("dof", "human-hand", "--json").json["tips"])
+
+
+def test_show_has_the_joints_and_the_tips_of_a_tree(call, tmp_path):
+    path = tmp_path / "coupled.yaml"
+    path.write_text(FINGERS.replace("[0, 0, 0, 90]", "[0, 0, 90]") + "couplings: [{joint: pip, follows: index.mcp}]\n")
+    record = call("show", path, "--json").json
+    validate(record, call("schema", "show").json)
+    assert [tip["link"] for tip in record["tips"]] == ["index.pip", "ring.mcp"]
+    assert [joint["variable"] for joint in record["joints"]] == ["q1", "q2", None, "q3"]
+    assert record["joints"][2]["follows"] == [{"joint": "index.mcp", "ratio": 1.0}]
+    assert record["joints"][0]["limits"] == [-60.0, 60.0]
+    assert record == robokin.load_tree(path).record()
+    assert "1 index.mcp" in call("show", path).text
 
 
 def test_validate_and_list_know_trees(call, fingers):

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+
+import pytest
+
 from robokin.formats import library_names
 from robokin.formats.library import library_files
 
@@ -134,3 +138,63 @@ def test_joint_values_in_radians_are_noted(call):
     rows = b"q1,q2\n0.7854,1.5708\n-1.5708,3.1416\n"
     assert "standard input: joint values" in call("fk", "planar2r", "-i", "-", stdin=rows).err
     assert "read as radians" in call("fk", "planar2r", "--angle", "rad", "--q", "45,90").err
+
+
+RADIANS = "0,-1.5708,1.5708,0,0,0"
+ENTRIES = "[[1,2],[3,4],[0,0],[0,0],[0,0],[1,1]]"
+
+
+@pytest.mark.parametrize(
+    ("words", "option"),
+    [
+        (["path", "puma560", "--from", RADIANS, "--to", "home"], "--from"),
+        (["path", "puma560", "--from", "home", "--to", RADIANS], "--to"),
+        (["plot", "puma560", "--q", RADIANS], ""),
+        (["plot", "puma560", "--q", "home", "--q", RADIANS], ""),
+        (["ik", "puma560", "--xyz", "400,100,300", "--rpy", "180,0,0", "--near", RADIANS], "--near"),
+        (["ik", "panda", "--xyz", "400,100,400", "--rpy", "180,0,0", "--hold", "q3=1.5708"], "--hold"),
+        (["check", "fk", "puma560", "--q", RADIANS, "--expect", "1,2,3"], ""),
+        (["check", "ik", "puma560", "--xyz", "400,100,300", "--q", RADIANS], ""),
+        (["check", "ik", "puma560", "--xyz", "400,100,300", "--q", "none", "--q", RADIANS, "--q", "1,2"], ""),
+        (["check", "jacobian", "planar2r", "--q", "0,1.5708", "--expect", ENTRIES], ""),
+    ],
+    ids=lambda value: value if isinstance(value, str) else " ".join(value),
+)
+def test_joint_values_in_radians_are_noted_wherever_they_are_typed(call, words, option):
+    where = f"{option}: " if option else ""
+    note = f"robokin: {where}joint values such as [-.0-9]+ are read as degrees; for radians give --angle rad"
+    found = [line for line in call(*words).err.splitlines() if "read as degrees" in line]
+    assert [bool(re.fullmatch(note, line)) for line in found] == [True]
+    assert "read as" not in call(*words, "--angle", "rad").err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["path", "puma560", "--from", "home", "--to", "10,20,30,40,50,60"],
+        ["plot", "puma560", "--q", "home"],
+        ["ik", "puma560", "--xyz", "400,100,300", "--near", "home"],
+        ["check", "ik", "puma560", "--xyz", "400,100,300", "--q", "none"],
+        ["check", "ik", "puma560", "--xyz", "400,100,300", "--q", "nan,0,0,0,0,0"],
+        ["check", "ik", "puma560", "--xyz", "400,100,300", "--q", "1e400,0,0,0,0,0"],
+        ["check", "ik", "puma560", "--xyz", "400,100,300", "--q", ""],
+        ["check", "fk", "puma560", "--q", "10,20,30,40,50,60", "--expect", "1,2,3"],
+    ],
+    ids=" ".join,
+)
+def test_other_joint_values_are_not_noted(call, words):
+    assert "read as" not in call(*words).err
+
+
+def test_questions_of_a_file_in_radians_are_noted_and_answers_are_not(call, tmp_path):
+    rows = "id,q1,q2,x,y,z\na,0.7854,1.5708,1,2,0\nb,-1.5708,3.1416,,,\n"
+    path, key = tmp_path / "answers.csv", tmp_path / "key.csv"
+    path.write_text(rows)
+    key.write_text("id;q1;q2\na;0,7854;1,5708\n")
+    note = "joint values such as 0.7854 are read as degrees"
+    assert f"{path}: {note}" in call("check", "fk", "planar2r", "-i", path).err
+    said = call("check", "fk", "planar2r", "-i", path, "--key", key).err
+    assert (f"{key}: {note}" in said, f"{path}: {note}" in said) == (True, False)
+    assert "read as" not in call("check", "ik", "planar2r", "-i", path).err
+    path.write_text('q1,q2,x,y,z\nnan,15.708,1,2,0\n,,1,2,0\n1e999,x,1,2,0\n"3,1,1,1,1\n')
+    assert "read as" not in call("check", "fk", "planar2r", "-i", path).err

@@ -390,7 +390,7 @@ def test_a_wrong_row_of_frames(row, column, said):
         (DEGREES + "joints: [[R]]\n", "4:10", "found a list of 1, expected row 1"),
         (DEGREES + "joints: [{type: R}, ~]\n", "4:21", "found nothing, expected row 2"),
         (DEGREES, "1:1", "found no 'joints' in a robot"),
-        (arm(head=DEGREES + "convention: craig\n"), "4:13", "expected standard, modified or frames"),
+        (arm(head=DEGREES + "convention: craig\n"), "4:13", "expected standard, modified, frames, screws or opw"),
         (arm(head=DEGREES + "convention: Standard\n"), "4:13", "did you mean 'standard'"),
         (arm(head=HEAD + "units: mm\n"), "3:8", "found 'mm', expected units: a mapping"),
         (arm(head=HEAD + "units: {length: ft}\n"), "3:17", "expected m, cm, mm or in"),

@@ -322,3 +322,57 @@ def test_many_steps_stay_a_rotation():
 
 def test_the_scope_may_be_empty():
     assert np.array_equal(evaluate_transform("Rot(z, 90)", Scope(degrees=True), MM_DEG), np.round(rot(Z, np.pi / 2)))
+
+
+# Makers' words against each other and against what is printed -----------------------------------------
+
+GIMBAL = [0.0, 90.0, -90.0, 180.0, -180.0, 30.0, 90.0 + 1e-7]
+
+
+@pytest.mark.parametrize("middle", GIMBAL)
+def test_the_makers_angles_where_two_axes_fall_together(middle):
+    """At a middle angle of 90° (ABC, WPR) or 0 (OAT) only the sum or the difference of the others counts."""
+    a, c = 25.0, -70.0
+    x, y, z = (lambda angle, axis=axis: rot(axis, math.radians(angle)) for axis in (X, Y, Z))
+    same(f"ABC({a}, {middle}, {c})", z(a) @ y(middle) @ x(c), MM_DEG)
+    same(f"WPR({c}, {middle}, {a})", z(a) @ y(middle) @ x(c), MM_DEG)
+    same(f"OAT({a}, {middle}, {c})", z(a) @ y(middle) @ z(c), MM_DEG)
+    same(f"Euler(zyx, {a}, {middle}, {c})", evaluate(f"ABC({a}, {middle}, {c})", MM_DEG), MM_DEG)
+    same(f"Euler(XYZ, {c}, {middle}, {a})", evaluate(f"WPR({c}, {middle}, {a})", MM_DEG), MM_DEG)
+    same(f"Euler(zyz, {a}, {middle}, {c})", evaluate(f"Euler({a}, {middle}, {c})", MM_DEG), MM_DEG)
+    if middle == 90.0:
+        same(f"ABC({a}, 90, {c})", evaluate(f"ABC({a - c}, 90, 0)", MM_DEG), MM_DEG)
+    if middle == 0.0:
+        same(f"OAT({a}, 0, {c})", evaluate(f"Rot(z, {a + c})", MM_DEG), MM_DEG)
+
+
+def test_a_rotation_vector_near_none_and_at_half_a_turn():
+    for size in (0.0, 1e-300, 1e-12, 1e-8, math.pi, math.pi - 1e-9, 2 * math.pi, 100.0):
+        axis = np.array([2.0, -1.0, 2.0]) / 3
+        x, y, z = (repr(float(part)) for part in axis * size)
+        same(f"RotVec({x}, {y}, {z})", rot(axis, size), atol=1e-13)
+
+
+def test_what_is_printed_of_an_orientation():
+    """The quaternion of Rz(90°), a UR's downward tool (0, π, 0), and the tool of an ABB that looks down, 0 0 1 0."""
+    s = math.sqrt(0.5)
+    same(f"QuatXYZW(0, 0, {s!r}, {s!r})", rot(Z, math.pi / 2))
+    same(f"Quat({s!r}, 0, 0, {s!r})", rot(Z, math.pi / 2))
+    same("RotVec(0, pi, 0)", np.diag([-1.0, 1.0, -1.0, 1.0]))
+    same("Quat(0, 0, 1, 0)", np.diag([-1.0, 1.0, -1.0, 1.0]))
+    same("QuatXYZW(0, 1, 0, 0)", np.diag([-1.0, 1.0, -1.0, 1.0]))
+
+
+@pytest.mark.parametrize("word", ["rotvec", "ABC", "wpr", "Oat", "QUATXYZW"])
+def test_makers_words_in_any_case_and_too_few_numbers(word):
+    numbers = "0, 0, 0, 1" if word.lower() == "quatxyzw" else "0, 0, 0"
+    same(f"{word}({numbers})", np.eye(4))
+    assert "expected" in refused(f"{word}({numbers[3:]})").message
+    assert "expected" in refused(f"{word}({numbers}, 0)").message
+
+
+def test_wrong_words_of_makers_are_answered():
+    assert "RotVec" in refused("RotVek(1, 2, 3)").message
+    assert "QuatXYZW" in refused("QuatXZYW(0, 0, 0, 1)").message
+    assert "expected lower case (about moving axes) or upper case" in refused("Euler(xYz, 1, 2, 3)").message
+    assert "found a quaternion of length 2" in refused("QuatXYZW(0, 0, 0, 2)").message

@@ -1,7 +1,6 @@
 """A URDF is read as the format has it, and what is none is refused where it stands."""
 
 import math
-import time
 from itertools import pairwise
 
 import numpy as np
@@ -256,6 +255,7 @@ def test_wrong_values_are_refused_where_they_stand(inner, column, words):
         ([links("a", "b"), joint("j", "a", "b", "spherical")], 5, "'spherical'"),
         ([links("a", "b"), '<joint name="j"/>'], 5, "no type"),
         ([links("a", "b"), '<joint type="fixed"/>'], 5, "without a name"),
+        ([links("a"), '<link name="b\x9b2J"/>'], 4, "printable"),
         ([links("a"), "<link/>"], 4, "without a name"),
         ([links("a", "b"), '<joint name="j" type="fixed"><parent link="a"/></joint>'], 5, "without a child"),
         (['<xacro:include filename="x"/>'], 3, ".xacro"),
@@ -316,6 +316,7 @@ def test_what_is_no_xml_is_refused_with_its_place(data, line, column, words):
     "data",
     [
         b"\n\n <?xml version='1.0'?><robot><link name='\xc3\xa9'/></robot>",
+        b"<robot><link name='\xc3\xa9'/></robot>\r\n\0",
         b"\xef\xbb\xbf<robot><link name='\xc3\xa9'/></robot>",
         b"<?xml version='1.0' encoding='ISO-8859-1'?><robot><link name='\xe9'/></robot>",
         "<?xml version='1.0' encoding='UTF-16'?><robot><link name='é'/></robot>".encode("utf-16"),
@@ -352,13 +353,11 @@ def test_places_are_those_of_the_text():
     ],
     ids=["deep", "many", "long name", "comments", "links", "one name", "text", "mimics"],
 )
-def test_hostile_texts_end_in_a_sentence_soon(text):
-    start = time.process_time()
+def test_hostile_texts_end_in_a_sentence(text):
     with pytest.raises(DescriptionError) as caught:
         read_urdf(text, "r.urdf")
     assert caught.value.line
     assert len(str(caught.value)) < 20_000
-    assert time.process_time() - start < 20  # that it ends; how soon is measured elsewhere
 
 
 def test_an_entity_bomb_is_refused_at_its_first_word():

@@ -165,6 +165,8 @@ def test_an_error_in_an_included_file_names_that_file(tmp_path):
         ("${[x for x in (1,)]}", "lists"),
         ("${open('/etc/passwd')}", "nothing of a xacro file is run"),
         ("${__import__('os')}", "unknown function"),
+        ("${p['key']}", "unknown name"),
+        ("${pi['key']}", "part taken"),
         ("${9**9**9**9}", "value"),
         ("${'a' * 1000000000}", "string 'a'"),
         ("${(((", "without '}'"),

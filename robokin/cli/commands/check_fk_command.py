@@ -42,6 +42,7 @@ def command(
         robokin check fk planar2r --q 90,0 --expect "Trans(0,1.6,0)Rot(z,90)" --json
         robokin fk puma560 -i joints.csv -f csv | robokin check fk puma560 -i -
     """
+    from robokin.cli.configurations import typed_configurations
     from robokin.cli.statuses import say
     from robokin.grading.answers.answer_tasks import pose_tasks
     from robokin.grading.answers.typed_answers import typed_pose_tasks
@@ -57,6 +58,7 @@ def command(
         raise InputError(f"{missing} is missing, expected --q and --expect, or --input FILE")
     else:
         tasks = typed_pose_tasks(q, expect, check.robot, check.units)
+        typed_configurations(q, check.robot, check.units)  # which notes values in the other angle unit
     items = marked(check, tasks, way.rules)
     if sheet.input is not None and sheet.key is None:
         items = without_repetitions(items)

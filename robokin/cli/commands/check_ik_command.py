@@ -44,6 +44,7 @@ def command(
         robokin check ik puma560 --xyz=-149.09,921.12,20.32 --rpy 0,90,90 --q home
         robokin check ik planar2r --xy 5,0 --q none
     """
+    from robokin.cli.configurations import note_answered_units
     from robokin.cli.statuses import say
     from robokin.cli.targets import parse_target
     from robokin.grading.answers.answer_tasks import joint_tasks
@@ -65,6 +66,7 @@ def command(
             raise InputError("--q is missing, expected the joint values that were answered, or --input FILE")
         for note in question.notes:
             say(note)
+        note_answered_units(q, check.robot, check.units)
         answers = tuple(typed_joints(text, check.robot, check.units) for text in q)
         tasks = [AnswerTask("1", GivenValue(AnsweredPose(question.T, question.task)), answers)]
     return way.finish("ik", robot, check, marked(check, check.prepared(tasks), way.rules))

@@ -36,7 +36,7 @@ def command(
         robokin check jacobian planar2r --q 0,90 --expect "$(cat jacobian.txt)"
         robokin check jacobian planar2r --q 0,90 --frame tool --expect "$J"
     """
-    from robokin.formats.vector_expressions import parse_configuration
+    from robokin.cli.configurations import typed_configurations
     from robokin.grading.answers.typed_answers import jacobian_answer
     from robokin.grading.jacobian_marks import JacobianCheck
     from robokin.grading.marking import AnswerTask, GivenValue, marked
@@ -47,6 +47,7 @@ def command(
             raise InputError(f"{name} is missing, expected --q and --expect")
     chosen = choose(frame, FRAMES, "--frame") or "base"
     check = way.subject(JacobianCheck, robot, allowed, frame=chosen)
-    values = parse_configuration(str(q), check.robot, check.units) * joint_factors(check.robot, check.units)
+    (given,) = typed_configurations([str(q)], check.robot, check.units)
+    values = given * joint_factors(check.robot, check.units)
     task = AnswerTask("1", GivenValue(values), (jacobian_answer(str(expect), check.robot, check.units, chosen),))
     return way.finish("jacobian", robot, check, marked(check, [task], way.rules))

@@ -36,7 +36,7 @@ def command(
             "--input -i",
             "FILE",
             "A pose a line: x, y, z, roll, pitch, yaw or what else `robokin fk` writes (.csv, .jsonl, .json, "
-            ".npy), or x, y, z alone; - for standard input.",
+            ".npy), or x, y, z alone, or x, y, phi of a planar arm; - for standard input.",
         ),
     ] = None,
     near: Annotated[
@@ -111,9 +111,10 @@ def command(
     """
     from itertools import chain
 
-    from robokin.cli.arguments import parse_configuration
+    from robokin.cli.configurations import note_held_units, typed_configurations
     from robokin.cli.held_joints import parse_hold
     from robokin.cli.targets import parse_target
+    from robokin.kinematics.flat_arm import flat_arm
     from robokin.model.joint_units import joint_factors
     from robokin.records.solution_records import RECORD_KEYS, SolutionRecords
     from robokin.reports.solution_report import SolutionReport, csv_columns
@@ -140,9 +141,10 @@ def command(
     }
     held = parse_hold(hold or [], model, units, not no_limits)
     if held:
+        note_held_units(held, model, units)
         arguments["hold"] = {joint: value * factors[joint] for joint, value in held.items()}
     if near is not None:
-        arguments["near"] = parse_configuration(near, model, units, "--near") * factors
+        arguments["near"] = typed_configurations([near], model, units, "--near")[0] * factors
     tolerances = (
         _tolerance(tol_position, "--tol-position", units, angle=False),
         _tolerance(tol_angle, "--tol-angle", units, angle=True),
@@ -160,7 +162,7 @@ def command(
 
             require_lesson(model, arguments["task"])
     else:
-        targets = Targets(input, units, orientation_kind(as_), carried, say)
+        targets = Targets(input, units, orientation_kind(as_), carried, say, plane=flat_arm(model))
         arriving = targets.blocks()
         first = next(arriving, None)  # which says what is asked of the tool
         arguments["task"] = targets.task or "pose"

@@ -66,7 +66,7 @@ def command(
         robokin path planar3r --from 10,40,20 --xy 0.9,1.2 --phi 90 --line -f csv
         robokin path scara --from 0,60,100,0 --to 40,30,50,90 --json
     """
-    from robokin.cli.arguments import parse_configuration
+    from robokin.cli.configurations import typed_configurations
     from robokin.inverse.follow import MOST
     from robokin.model.joint_units import joint_factors
     from robokin.records.path_records import PathRecords
@@ -85,11 +85,11 @@ def command(
     if from_ is None:
         example = ",".join(["0"] * model.n)
         raise InputError(f"--from is missing, expected {model.n} values or a named pose, such as --from {example}")
-    start = parse_configuration(from_, model, units, "--from") * factors
+    start = typed_configurations([from_], model, units, "--from")[0] * factors
     target.exclude("--to", to)
     if to is None and not target.given:
         raise InputError("there is no end, expected --to, --pose, --matrix, --xyz or --xy")
-    end = None if to is None else parse_configuration(to, model, units, "--to") * factors
+    end = None if to is None else typed_configurations([to], model, units, "--to")[0] * factors
     path = _path(model, units, start, end, target.texts, count, line, not no_limits, chosen)
     answer = PathReport(PathRecords(path, units), end if line else None)
     if kind not in ("table", "json"):

@@ -77,9 +77,8 @@ def command(
     """
     from dataclasses import replace
 
-    import numpy as np
-
-    from robokin.cli.arguments import parse_configuration, way_of
+    from robokin.cli.arguments import way_of
+    from robokin.cli.configurations import typed_configurations
     from robokin.inverse.solutions import Question
     from robokin.model import Mechanism
     from robokin.model.joint_units import joint_factors
@@ -105,9 +104,9 @@ def command(
     model, units = description.robot(robot)
     if q and "-" in q:
         raise InputError("--q: found '-', expected joint values or the name of a pose; a picture reads no input")
-    values = [parse_configuration(text, model, units) for text in q or []]
-    if values:
-        for note in PoseMaker(model, units, False).outside_notes(np.array(values)):
+    values = typed_configurations(q or [], model, units)
+    if len(values):
+        for note in PoseMaker(model, units, False).outside_notes(values):
             say(note)
     given, name = [value * joint_factors(model, units) for value in values], ""
     if q and q[0].strip() in model.poses:

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated
+
+import typer
 
 from robokin.cli.option_groups import DescriptionOptions, OutputOptions
 from robokin.cli.options import RobotArgument
-
-ROWS = {"robot": "rows", "mechanism": "joints", "wheeled": "wheels"}
-"""What a CSV has a row for, by the kind of what is described."""
+from robokin.errors import InputError
 
 
-def command(robot: RobotArgument, *, output: OutputOptions, description: DescriptionOptions) -> int:
+def command(
+    robot: RobotArgument,
+    *,
+    yaml: Annotated[
+        bool, typer.Option("--yaml", help="The robot's description, formulas worked out, to begin another with.")
+    ] = False,
+    output: OutputOptions,
+    description: DescriptionOptions,
+) -> int:
     """A robot's table, its class, its wrist and its freedoms; a mechanism's joints and its count; a base's wheels.
 
     Examples:
@@ -20,18 +28,22 @@ def command(robot: RobotArgument, *, output: OutputOptions, description: Descrip
         robokin show car
         robokin show arm.yaml --length m --angle rad
         robokin show scara-frames --set l1=500 --json
+        robokin show puma560 --yaml
     """
     from robokin.records.description_records import described_record
     from robokin.tables.sink import sink
-    from robokin.tables.written_rows import csv_records, written
+    from robokin.tables.written_rows import written
 
+    if yaml:
+        return _described(robot, output, description)
     kind = output.kind
-    loaded = description.entry(robot)
+    loaded = description.anything(robot)
     record = described_record(loaded, description.over(loaded.units))
 
     def csv() -> bytes:
-        rows = record[ROWS[record["kind"]]]
-        return csv_records(list(rows[0]), [[_cell(value) for value in row.values()] for row in rows])
+        from robokin.reports.table_files import csv_table
+
+        return csv_table(record)
 
     def page() -> bytes:
         from robokin.reports.description_tables import description_table
@@ -43,5 +55,18 @@ def command(robot: RobotArgument, *, output: OutputOptions, description: Descrip
     return 0
 
 
-def _cell(value: Any) -> Any:
-    return " ".join(map(str, value)) if isinstance(value, list) else "" if value is None else value
+def _described(robot: str, output: OutputOptions, description: DescriptionOptions) -> int:
+    """Print the description of a robot."""
+    from dataclasses import replace
+
+    from robokin.formats.written_robot import written
+    from robokin.tables.sink import sink
+
+    if output.chosen is not None or output.file is not None:
+        raise InputError("--yaml has one form and is printed, expected no --format, --json or --output with it; "
+                         "robokin convert writes it to a file")  # fmt: skip
+    loaded, units = description.robot(robot)
+    text = written(replace(loaded, units=units)).encode()
+    with sink(None) as stream:
+        stream.write(text)
+    return 0

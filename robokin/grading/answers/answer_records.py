@@ -14,6 +14,7 @@ from itertools import chain
 from typing import IO, NamedTuple
 
 from robokin.errors import InputError, counted
+from robokin.files import read_up_to
 from robokin.tables.csv_records import Record, RecordReader
 from robokin.tables.text_source import MAX_ROW, Say
 
@@ -62,14 +63,11 @@ class SheetReader(RecordReader):
 
     def blocks(self) -> Iterator[bytes]:
         """The whole file. Raises InputError for one that is too large or no text."""
-        parts, size = [], 0
-        while chunk := self.stream.read(1 << 20):
-            parts.append(chunk)
-            size += len(chunk)
-            if size > LARGEST:
-                raise InputError(f"{self.name}: found more than {LARGEST} bytes, expected the answers of a class")
-        if parts:
-            yield self._beginning(b"".join(parts))
+        data = read_up_to(self.stream, self.name, LARGEST, "rows that can be read")
+        if len(data) > LARGEST:
+            raise InputError(f"{self.name}: found more than {LARGEST} bytes, expected the answers of a class")
+        if data:
+            yield self._beginning(data)
 
     def text(self, line: bytes, number: int) -> str:
         """A line as text; a null character is no number, and no reason to refuse the file."""

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
+import numpy as np
+
 from robokin.arrays import Array
-from robokin.grading.answers.answer_files import Row, read_answers, read_key
+from robokin.formats.typed_angles import LOOKED_AT, unit_of_values
+from robokin.grading.answers.answer_files import AnswerFile, Row, read_answers, read_key
 from robokin.grading.answers.answered_poses import needed_poses, pose_reader
 from robokin.grading.answers.submissions import Submission
 from robokin.grading.answers.typed_answers import NONE
@@ -35,6 +40,14 @@ class JointReader:
         values = row.numbers(self.columns, self.robot.revolute.tolist(), self.units)
         return values * joint_factors(self.robot, self.units)
 
+    def unit_note(self, rows: Sequence[Row]) -> str:
+        """A sentence where the plain numbers of the first rows look like angles in the other unit; "" for none."""
+        plain: list[list[float]] = []
+        for row in rows[:LOOKED_AT]:
+            with contextlib.suppress(ValueError):
+                plain.append([float(row.decimals.plain(row.cells[name])) for name in self.columns])
+        return unit_of_values(self.robot, self.units, np.array(plain).reshape(len(plain), self.robot.n))
+
     def answer(self, row: Row) -> GivenAnswer:
         """The answer of a row: joint values, or that there are none."""
         first, *others = (row.cells[name] for name in self.columns)
@@ -42,6 +55,12 @@ class JointReader:
         unsolved = row.cells.get("solution") == "0" and not first
         none = not (row.fault or any(others)) and (unsolved or first.lower() == NONE)
         return GivenAnswer(partial(self.read, row), claims_none=none, line=row.line)
+
+
+def note_units(sheet: AnswerFile, joints: JointReader) -> None:
+    """A note where the joint values of questions look like angles in the other unit; of answers the marks tell it."""
+    if note := joints.unit_note(sheet.rows):
+        sheet.say(f"{sheet.name}: {note}")
 
 
 def pose_tasks(
@@ -56,12 +75,14 @@ def pose_tasks(
 
     if key is None:
         sheet.require(joints.columns, "the joint values of the question; or --key FILE has them")
+        note_units(sheet, joints)
         return [
             AnswerTask(id or str(i), partial(joints.read, row), (answer(row),), who, row.line)
             for i, (who, id, row) in enumerate(sheet.lines(), start=1)
         ]
     questions = read_key(key, say)
     questions.require(joints.columns, "the joint values of the question")
+    note_units(questions, joints)
     known = questions.keyed(joints.read)
     tasks = []
     for who, id, rows in sheet.by_question(list(known)):

@@ -1,0 +1,376 @@
+"""One chain in another convention: a standard or a modified Denavit-Hartenberg table, or frames.
+
+Between the motions of two joints in a row stands a constant step C. Every such step is
+
+    C = Rot(z, theta) Trans(0, 0, d) · Trans(a, 0, 0) Rot(x, alpha) · Trans(0, 0, e) Rot(z, phi)
+
+along and about the common normal of the two axes. The first two factors belong to the joint before it, the middle two
+are the link, and the last two let the motion of the next joint pass, so that they become a part of its own step. A
+standard and a modified table hold the same numbers: they only part the rows at other places.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from robokin.arrays import Array
+from robokin.errors import InputError, Note, shown
+from robokin.expected import expect_choice
+from robokin.kernel.chain import chain_of, chain_size
+from robokin.kernel.frames import pose
+from robokin.kinematics.common_normal import FAR_FEET, PARALLEL, NormalStep, normal_step, turn, turn_and_shift
+from robokin.model import Joint, JointType, Robot, expect_robot
+from robokin.model.robot import Convention, row_constants
+from robokin.spatial import exact, invert
+
+CONVENTIONS = ("standard", "modified", "frames")
+
+SAME = 1e-12
+"""How far, in the arm's size, the poses of a table may be from those of the robot that it is made of."""
+
+NEGLIGIBLE = 1e-13
+"""The same for one cell: what is shorter, in the arm's size, or a smaller angle [rad], is rounding."""
+
+ROUND_ANGLE = math.pi / 12.0
+
+FEW_DECIMALS = 9
+"""Decimals, in the robot's units, up to which a cell can be a round number that arithmetic has blurred."""
+
+
+def to_convention(robot: Robot, convention: Convention) -> Robot:
+    """The same robot in another convention: `standard`, `modified` or `frames`.
+
+    Every pose at every q: (n,) [rad | m] stays as it is, to 1e-12 of the arm's size. Names, limits, poses, senses,
+    units and zeros of the joints are kept. Between standard and modified only a and alpha change their rows. From
+    frames there are many tables; this one has a ≥ 0 and d = 0 where axes are parallel, a slide's axis lies where the
+    description puts it, and fixed rows become a part of the others. What a table cannot hold stands in `base` and
+    `tool`. Axes that are parallel to 1e-9 rad are taken as parallel, and a note says by how much they were off. A robot
+    that is in the convention already is returned as it is.
+
+    Raises InputError for axes that are so nearly parallel that the numbers of a table would have no meaning; frames
+    hold them. Raises InputTypeError for what is no robot.
+    Source: J. Denavit and R. S. Hartenberg, A kinematic notation for lower-pair mechanisms based on matrices,
+    J. Applied Mechanics 22, 1955; modified tables as J. J. Craig, Introduction to Robotics, 1986, has them.
+    """
+    robot = expect_robot(robot)
+    expect_choice(convention, CONVENTIONS, "convention")
+    if robot.convention == convention:
+        return robot
+    if convention == "frames":
+        made = _frames(robot)
+    elif robot.convention == "frames":
+        made = _table(robot, convention)
+    else:
+        made = _to_modified(robot) if convention == "modified" else _to_standard(robot)
+    return replace(made, convention=convention)
+
+
+def _to_modified(robot: Robot) -> Robot:
+    """A standard table as a modified one: a and alpha of a row stand in the next row, those of the last in the tool."""
+    before = [(0.0, 0.0), *((row.a, row.alpha) for row in robot.rows)]
+    texts = [(), *(row.texts for row in robot.rows)]
+    return _shifted(robot, before[:-1], texts[:-1], tool=exact(_link(*before[-1]) @ robot.tool))
+
+
+def _to_standard(robot: Robot) -> Robot:
+    """A modified table as a standard one: a and alpha of the first row stand in the base.
+
+    Where the tool is no more than a length along x and a turn about it, those are the last row's.
+    """
+    first = robot.rows[0]
+    after = [*((row.a, row.alpha) for row in robot.rows[1:]), (0.0, 0.0)]
+    texts = [*(row.texts for row in robot.rows[1:]), ()]
+    a, alpha = float(robot.tool[0, 3]), math.atan2(robot.tool[2, 1], robot.tool[1, 1])
+    tool = robot.tool
+    if not robot.texts and float(np.max(np.abs(_link(a, alpha) - tool))) <= NEGLIGIBLE:
+        after[-1], tool = (a, _round_angle(alpha)), np.eye(4)
+    return _shifted(robot, after, texts, base=exact(robot.base @ _link(first.a, first.alpha)), tool=tool)
+
+
+def _shifted(
+    robot: Robot,
+    links: list[tuple[float, float]],
+    texts: list[tuple[tuple[str, str], ...]],
+    base: Array | None = None,
+    tool: Array | None = None,
+) -> Robot:
+    """The robot with other cells a, alpha in its rows, and what is written in them, and with another base or tool."""
+    own, moved = ("theta", "d", "offset"), ("a", "alpha")
+    rows = tuple(
+        replace(
+            row,
+            a=a,
+            alpha=alpha,
+            texts=(*(one for one in row.texts if one[0] in own), *(one for one in written if one[0] in moved)),
+        )
+        for row, (a, alpha), written in zip(robot.rows, links, texts, strict=True)
+    )
+    ends = {"base": robot.base if base is None else base, "tool": robot.tool if tool is None else tool}
+    same = {name for name, T in ends.items() if np.array_equal(T, getattr(robot, name))}
+    kept = tuple(one for one in robot.texts if one[0].split()[0] in same)
+    return replace(robot, rows=rows, texts=kept, base=ends["base"], tool=ends["tool"])
+
+
+def _link(a: float, alpha: float) -> Array:
+    """Trans(a, 0, 0) Rot(x, alpha): (4, 4)."""
+    return NormalStep(0.0, 0.0, a, alpha).link()
+
+
+def _frames(robot: Robot) -> Robot:
+    """The robot as frames: where a joint's own frame stands in that of the joint before it."""
+    if not robot.n:
+        return _still(robot)
+    steps = _steps(robot)
+    origins = [exact(step) for step in steps]
+    rows = tuple(
+        Joint(
+            joint.name,
+            joint.type,
+            offset=joint.offset,
+            limits=joint.limits,
+            origin=origin,
+            axis=np.array([0.0, 0.0, 1.0]),
+            sense=joint.sense,
+        )
+        for joint, origin in zip(robot.joints, origins[:-1], strict=True)
+    )
+    return replace(robot, rows=rows, tool=exact(origins[-1] @ robot.tool), texts=(), parameters={})
+
+
+def _still(robot: Robot) -> Robot:
+    """A robot without joints: one fixed row that does nothing."""
+    T = np.eye(4)
+    for row in robot.rows:
+        before, after = row_constants(row, robot.convention)
+        T = T @ before @ after
+    row = Joint(robot.rows[0].name if robot.rows else "1", JointType.FIXED)
+    return replace(robot, rows=(row,), base=exact(robot.base @ T), texts=(), parameters={})
+
+
+def _steps(robot: Robot) -> list[Array]:
+    """The constant steps (n + 1) of (4, 4) before, between and after the motions along z, without base and tool."""
+    steps = [np.eye(4)]
+    for row in robot.rows:
+        before, after = row_constants(replace(row, sense=1), robot.convention)
+        steps[-1] = steps[-1] @ before
+        if row.moves:
+            steps.append(after)
+        else:
+            steps[-1] = steps[-1] @ after
+    return steps
+
+
+@dataclass(frozen=True)
+class TableCells:
+    """The numbers of a table before they are parted into rows.
+
+    base, tool: (4, 4) [m]; link: (a, alpha) before the first motion; steps: (n) of what stands after each motion;
+    tilt [rad]: how far axes that count as parallel are from it.
+    """
+
+    base: Array
+    link: tuple[float, float]
+    steps: tuple[NormalStep, ...]
+    tool: Array
+    tilt: float
+
+
+def _table(robot: Robot, convention: Convention) -> Robot:
+    """The robot of frames as a table."""
+    if not robot.n:
+        return _still(robot)
+    size = chain_size(chain_of(robot))
+    cells = _cells(robot, convention, size)
+    exactly = _robot_of(robot, cells, convention)
+    q = _configurations(robot, size)
+    wanted = pose(chain_of(robot), q)
+    rounded = _robot_of(robot, _rounded(cells, robot, size), convention)
+    allowed = SAME * size + 8.0 * robot.n * cells.tilt * size
+    best = rounded if _deviation(rounded, q, wanted) <= allowed / 4.0 else exactly
+    off = _deviation(best, q, wanted)
+    if off > allowed:
+        raise InputError(
+            f"the {convention} table of {shown(robot.name)} would be off by {off:.1g} m, expected axes that are either "
+            "parallel or clearly not; convention frames holds them"
+        )
+    if cells.tilt > SAME:
+        said = f"axes {cells.tilt:.1g} rad from parallel are taken as parallel; the poses are off by {off:.1g} m"
+        return replace(best, notes=(*robot.notes, Note(said)))
+    return best
+
+
+def _configurations(robot: Robot, size: float) -> Array:
+    """(s, n) [rad | m] configurations at which tables are compared: some turns, and slides up to twice the arm's size.
+
+    They are always the same.
+    """
+    q = np.vstack([np.zeros(robot.n), np.random.default_rng(0).uniform(-2.0, 2.0, (6, robot.n))])
+    return np.where(robot.revolute, q, size * q)
+
+
+def _deviation(robot: Robot, q: Array, wanted: Array) -> float:
+    """How far [m], or in the arm's size where it turns, poses of a robot are from others (s, 4, 4)."""
+    chain = chain_of(robot)
+    off = np.abs(pose(chain, q) - wanted)
+    return float(max(np.max(off[:, :3, 3]), chain_size(chain) * np.max(off[:, :3, :3])))
+
+
+def _cells(robot: Robot, convention: Convention, size: float) -> TableCells:
+    """The numbers of the table of a robot of frames."""
+    small = NEGLIGIBLE * size
+    turns = robot.revolute
+    steps = _with_slides_near(robot, _steps(robot), size)
+    base, link, rest = _first(robot.base, steps[0], convention, small)
+    found, tilt = [], 0.0
+    for i in range(1, robot.n):
+        step = normal_step(rest @ steps[i], small)
+        if step.tilted(FAR_FEET * size) and not turns[i]:
+            # A slide may stand anywhere: it is moved to the frame before it, and its place is the next row's matter.
+            moved = rest @ steps[i]
+            away = moved[:3, :3].T @ moved[:3, 3]
+            steps[i + 1] = _moved(away) @ steps[i + 1]
+            step = normal_step(turn(moved), small)
+        if step.tilted(FAR_FEET * size):
+            raise _refusal(robot, i, step, convention)
+        tilt = max(tilt, step.snapped)
+        found.append(step)
+        rest = step.rest()
+    last = rest @ steps[robot.n]
+    whole = normal_step(last @ robot.tool, small).ended()
+    ends = _nothing(whole.e, whole.phi, small) and whole.snapped <= NEGLIGIBLE
+    if convention == "modified":
+        ends = ends and _nothing(whole.a, whole.alpha, small)
+    if ends:
+        found.append(whole)
+        tool = np.eye(4)
+    else:
+        found.append(NormalStep(math.atan2(rest[1, 0], rest[0, 0]), float(rest[2, 3]), 0.0, 0.0))
+        tool = exact(steps[robot.n] @ robot.tool)
+    return TableCells(base, link, tuple(found), tool, tilt)
+
+
+def _nothing(length: float, angle: float, small: float) -> bool:
+    """Whether a length [m] and an angle [rad] are both no more than rounding."""
+    return abs(length) <= small and abs(angle) <= NEGLIGIBLE
+
+
+def _moved(p: Array) -> Array:
+    """The translation (4, 4) by p: (3,) [m]."""
+    T = np.eye(4)
+    T[:3, 3] = p
+    return T
+
+
+def _with_slides_near(robot: Robot, steps: list[Array], size: float) -> list[Array]:
+    """The steps, slides moved onto the next axis where that is nearly parallel to theirs and the normal far away."""
+    for i in range(robot.n - 1, 0, -1):
+        step = normal_step(steps[i], NEGLIGIBLE * size)
+        if not robot.revolute[i - 1] and step.tilted(FAR_FEET * size):
+            steps[i - 1] = steps[i - 1] @ _moved(steps[i][:3, 3])
+            steps[i] = turn(steps[i])
+    return steps
+
+
+def _first(base: Array, step: Array, convention: Convention, small: float) -> tuple[Array, tuple[float, float], Array]:
+    """The base, a and alpha before the first motion, and what is passed on through it.
+
+    A modified table holds a and alpha where nothing else is needed. Else the base's z lies on the first axis, its
+    origin at the foot of the perpendicular from the old one, its x as near to the old one as it can be.
+    """
+    if convention == "modified":
+        whole = normal_step(step, small)
+        if _nothing(whole.d, whole.theta, small) and not whole.snapped > NEGLIGIBLE and not whole.tilted(math.inf):
+            return base, (whole.a, whole.alpha), whole.rest()
+    z, p = step[:3, 2], step[:3, 3]
+    along = float(z @ p)
+    x = np.array([1.0, 0.0, 0.0]) - z[0] * z
+    if float(np.linalg.norm(x)) < PARALLEL:
+        x = np.array([0.0, 1.0, 0.0]) - z[1] * z
+    x /= np.linalg.norm(x)
+    phi = math.atan2(float(step[:3, 0] @ np.cross(z, x)), float(step[:3, 0] @ x))
+    rest = turn_and_shift(phi, along)
+    return exact(base @ exact(step @ invert(rest))), (0.0, 0.0), rest
+
+
+def _refusal(robot: Robot, i: int, step: NormalStep, convention: Convention) -> InputError:
+    """The error for joint i + 1 (from 1) whose axis is nearly parallel to that of the joint before it."""
+    before, after = robot.joints[i - 1].name, robot.joints[i].name
+    return InputError(
+        f"the axes of joints {shown(before)} and {shown(after)} of {shown(robot.name)} are {step.tilt:.2g} rad from "
+        f"parallel and their common normal is {step.feet:.3g} m away, expected axes that are parallel or clearly not "
+        f"for a {convention} table; convention frames holds them as they are"
+    )
+
+
+def _robot_of(robot: Robot, cells: TableCells, convention: Convention) -> Robot:
+    """The robot with a table of these numbers."""
+    rows = []
+    links = [cells.link, *((step.a, step.alpha) for step in cells.steps)]
+    for i, (joint, step) in enumerate(zip(robot.joints, cells.steps, strict=True)):
+        a, alpha = links[i] if convention == "modified" else links[i + 1]
+        turns = joint.type is JointType.REVOLUTE
+        rows.append(
+            Joint(
+                joint.name,
+                joint.type,
+                theta=0.0 if turns else step.theta,
+                d=step.d if turns else 0.0,
+                a=a,
+                alpha=alpha,
+                offset=_offset(joint.offset, step.theta) if turns else joint.offset + step.d,
+                limits=joint.limits,
+                sense=joint.sense,
+            )
+        )
+    return replace(
+        robot, rows=tuple(rows), convention=convention, base=cells.base, tool=cells.tool, texts=(), parameters={}
+    )
+
+
+def _offset(own: float, more: float) -> float:
+    """The offset [rad] of a turning joint, within half a turn where anything is added to its own."""
+    if more == 0.0:
+        return own
+    total = math.remainder(own + more, 2.0 * math.pi)
+    return math.pi if total <= -math.pi + NEGLIGIBLE else _round_angle(total)
+
+
+def _round_angle(value: float) -> float:
+    """An angle [rad], a multiple of 15° where it is one but for rounding."""
+    part = round(value / ROUND_ANGLE)
+    return part * math.pi / 12.0 if abs(value - part * ROUND_ANGLE) <= SAME else value
+
+
+def _rounded(cells: TableCells, robot: Robot, size: float) -> TableCells:
+    """The same numbers, those that are round ones but for rounding made so."""
+
+    def length(value: float) -> float:
+        return _few_digits(value, robot.units.metres, NEGLIGIBLE * size)
+
+    def angle(value: float) -> float:
+        value = _round_angle(value)
+        return _few_digits(value, robot.units.radians, NEGLIGIBLE) if robot.units.degrees else value
+
+    def rounded(step: NormalStep) -> NormalStep:
+        return replace(step, theta=angle(step.theta), d=length(step.d), a=length(step.a), alpha=angle(step.alpha))
+
+    def placed(T: Array) -> Array:
+        T = T.copy()
+        T[:3, 3] = [length(value) for value in T[:3, 3]]
+        return T
+
+    link = (length(cells.link[0]), angle(cells.link[1]))
+    steps = tuple(rounded(step) for step in cells.steps)
+    return replace(cells, base=placed(cells.base), link=link, steps=steps, tool=placed(cells.tool))
+
+
+def _few_digits(value: float, unit: float, close: float) -> float:
+    """A value as the number of its unit with the fewest decimals that is as close as that, if there is one."""
+    for decimals in range(FEW_DECIMALS + 1):
+        near = round(value / unit, decimals) * unit
+        if abs(near - value) <= close:
+            return near + 0.0
+    return value

@@ -1,0 +1,134 @@
+"""A robot's table for papers and other programs: Markdown, LaTeX, CSV."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from robokin.number_text import show_range
+from robokin.reports.description_tables import transform_in_short, variable_cell
+from robokin.tables.written_rows import csv_records
+
+ROWS = {"robot": "rows", "tree": "joints", "mechanism": "joints", "wheeled": "wheels"}
+"""What a CSV has a row for, by the kind of what is described."""
+
+CELLS = {
+    "standard": ("theta", "d", "a", "alpha"),
+    "modified": ("alpha", "a", "theta", "d"),
+    "frames": ("origin", "axis"),
+}
+"""The cells of a row in the order in which tables have them."""
+
+SYMBOLS = {"theta": r"\theta", "d": "d", "a": "a", "alpha": r"\alpha"}
+
+SPECIAL = {
+    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "#": r"\#", "$": r"\$", "%": r"\%", "&": r"\&", "_": r"\_",
+    "~": r"\textasciitilde{}", "^": r"\textasciicircum{}",
+}  # fmt: skip
+"""What LaTeX writes for what it would read as something else."""
+
+
+def csv_table(record: dict[str, Any]) -> bytes:
+    """The rows of what a document describes, all numbers in full."""
+    rows = record[ROWS[record["kind"]]]
+    return csv_records(list(rows[0]), [[_csv_cell(value) for value in row.values()] for row in rows])
+
+
+def _csv_cell(value: Any) -> Any:
+    if isinstance(value, list):
+        return " ".join(" ".join(map(str, one.values())) if isinstance(one, dict) else str(one) for one in value)
+    return "" if value is None else value
+
+
+def ends_in_short(record: dict[str, Any]) -> list[str]:
+    """Base and tool, those that are there, in a few words each."""
+    texts = ((name, transform_in_short(record[name], record["units"]["angle"])) for name in ("base", "tool"))
+    return [f"{name}: {text}" for name, text in texts if text]
+
+
+def markdown_table(record: dict[str, Any]) -> bytes:
+    """A robot's table in Markdown, numbers to six decimals."""
+    modified = record["convention"] == "modified"
+    titles = [_named(name, modified, "{} i-1") for name in CELLS[record["convention"]]]
+    lines = [["i", "joint", "type", *titles, "limits"]]
+    lines += [[_printable(one).replace("\\", "\\\\").replace("|", r"\|") for one in row] for row in _cells_of(record)]
+    left = [True, True, True, *[record["convention"] == "frames"] * len(titles), True]
+    rule = [":--" if one else "--:" for one in left]
+    text = [_printable(_about(record)), ""]
+    text += [f"| {' | '.join(line)} |" for line in [lines[0], rule, *lines[1:]]]
+    for end in ends_in_short(record):
+        text += ["", end]
+    return ("\n".join(text) + "\n").encode()
+
+
+def latex_table(record: dict[str, Any]) -> bytes:
+    """A robot's table in LaTeX, as the package booktabs draws it, numbers to six decimals."""
+    frames, modified = record["convention"] == "frames", record["convention"] == "modified"
+    names = CELLS[record["convention"]]
+    titles = [name if frames else _symbol(name, modified) for name in names]
+    columns = "rll" + ("l" if frames else "r") * len(names) + "l"
+    lines = [
+        f"% {_printable(_about(record))}",
+        r"% \usepackage{booktabs}",
+        rf"\begin{{tabular}}{{{columns}}}",
+        r"\toprule",
+        " & ".join(["$i$", "joint", "type", *titles, "limits"]) + r" \\",
+        r"\midrule",
+    ]
+    for row in _cells_of(record):
+        number, name, kind, *cells, limits = row
+        cells = [_escaped(cell) if frames else _math(cell) for cell in cells]
+        lines.append(" & ".join([number, _escaped(name), kind, *cells, _math(limits)]) + r" \\")
+    ends = ends_in_short(record)
+    if ends:
+        lines.append(r"\midrule")
+        lines += [rf"\multicolumn{{{len(columns)}}}{{l}}{{{_escaped(end)}}} \\" for end in ends]
+    lines += [r"\bottomrule", r"\end{tabular}"]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _about(record: dict[str, Any]) -> str:
+    length, angle = record["units"]["length"], record["units"]["angle"]
+    return f"{record['name']}: {record['convention']} convention, lengths in {length}, angles in {angle}"
+
+
+def _cells_of(record: dict[str, Any]) -> list[list[str]]:
+    """The rows as texts: number, name, type, the convention's cells, limits."""
+    return [
+        [
+            str(row["i"]),
+            row["name"],
+            row["type"],
+            *(variable_cell(row, name, record["units"]["angle"]) for name in CELLS[record["convention"]]),
+            "" if row["limits"] is None else show_range(*row["limits"]),
+        ]
+        for row in record["rows"]
+    ]
+
+
+def _named(name: str, modified: bool, before: str) -> str:
+    """The heading of a column; a modified table has a and alpha of the link before."""
+    return before.format(name) if modified and name in ("a", "alpha") else name
+
+
+def _symbol(name: str, modified: bool) -> str:
+    index = "{i-1}" if modified and name in ("a", "alpha") else "i"
+    return f"${SYMBOLS[name]}_{index}$"
+
+
+def _math(text: str) -> str:
+    """Numbers and variables as LaTeX sets them."""
+    if not text:
+        return ""
+    text = re.sub(r"q(\d+)", r"q_{\1}", text).replace(" .. ", r" \ldots ")
+    text = re.sub(r"(\d)e([-+]\d+)", lambda found: rf"{found[1]} \cdot 10^{{{int(found[2])}}}", text)
+    return f"${text}$"
+
+
+def _printable(text: str) -> str:
+    return "".join(letter if letter.isprintable() else " " for letter in text)
+
+
+def _escaped(text: str) -> str:
+    """A text as LaTeX reads it."""
+    return "".join(SPECIAL.get(letter, letter) for letter in _printable(text))
