@@ -9,10 +9,8 @@ from pathlib import Path
 from robokin.errors import InputError
 from robokin.files import open_path, read_up_to
 from robokin.formats.part import Part
+from robokin.formats.xml_tree import MAX_XML_BYTES
 from robokin.model import Tree
-
-MAX_FOREIGN_BYTES = 16 << 20
-"""A description with its links and meshes' names; greater ones are something else."""
 
 FIRST_TAG = re.compile(rb"<([A-Za-z_][\w.-]*)")
 """The root's tag, where no comment stands before it."""
@@ -40,7 +38,7 @@ def read_foreign(path: Path, overrides: MappingType[str, str], mode: int | None,
 
         return read_xacro(path, packages=part.packages, arguments=overrides, exact=part.exact)
     with open_path(place, expected) as stream:
-        data = read_up_to(stream, place, MAX_FOREIGN_BYTES, expected)
+        data = read_up_to(stream, place, MAX_XML_BYTES, expected)
     if ending in (".xml", ".mjcf"):
         found = FIRST_TAG.search(PROLOGUE.sub(b"", data[:65536]))
         ending = {b"robot": ".urdf", b"sdf": ".sdf"}.get(found[1] if found else b"", ".mjcf")

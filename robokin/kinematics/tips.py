@@ -43,6 +43,7 @@ def _tip_programs(tree: Tree) -> list[tuple[ChainProgram, Index, Array | None]]:
         chain = graph.chain(graph.links[graph.root], tip.name)
         last = len(chain.constants) - 1
         segments = [[Constant(exact(C), mark=i == last)] for i, C in enumerate(chain.constants)]
+        # Where each joint has a variable of its own the values are the variables, to the last digit.
         plain = np.array_equal(chain.S, np.eye(len(chain.variables)))
         program = ChainProgram(segments, chain.turns, chain.offsets)
         found.append((program, chain.variables, None if plain else chain.S))

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 
@@ -26,6 +26,10 @@ from robokin.arrays import Array, Flags, Index, read_only
 from robokin.brief import Brief
 from robokin.errors import InputError, did_you_mean, shown
 from robokin.model.topology import Topology, topology_of
+
+GREATEST_RATIO = 1e9
+"""What couplings may multiply a value by, and add to it [rad | m]: gears are far below, and products of a few stay
+numbers."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -91,6 +95,7 @@ class Tip(Brief):
 class SerialChain(Brief):
     """The joints that move between two links of a graph, as C0 J1(v1) C1 … Jn(vn) Cn, v = S u + offsets.
 
+    A helical joint is two of them, a turn and a slide that follows it.
     constants: (n + 1, 4, 4) [m]; base: (4, 4) the pose of the first link in the frame that C0 begins in, which is the
     world's for the graph's root and the link's own for another. variables: (k,) the numbers of those of the graph's
     variables that move it; S: (n, k); offsets: (n,) [rad | m], zeros of the joints included.
@@ -185,6 +190,9 @@ class Graph(Brief):
                 S[places[name]] += ratio * S[places[other]]
                 o[places[name]] += ratio * o[places[other]]
             o[places[name]] += coupled[name].offset if name in coupled else 0.0
+            if not max(np.max(np.abs(S[places[name]]), initial=0.0), abs(o[places[name]])) <= GREATEST_RATIO:
+                expected = f"expected ratios and offsets that make less than {GREATEST_RATIO:g}"
+                raise InputError(f"the couplings of joint {shown(name)} multiply its values too far, {expected}")
         return read_only(S), read_only(o)
 
     def _value_of(self, name: str) -> int:
@@ -235,6 +243,8 @@ class Graph(Brief):
             if np.isnan(joint.before).any():
                 raise InputError(f"joint {shown(joint.name)} has no axis in a known place, expected a hinge or a slide")
             constants[-1] = constants[-1] @ joint.before
+            if joint.type == "helical":  # a turn, and a slide along the same axis by so much as its pitch says
+                constants.append(np.eye(4))
             if joint.moves:
                 constants.append(joint.after)
             else:
@@ -244,10 +254,18 @@ class Graph(Brief):
         return self._driven(moving, np.stack(constants), frame)
 
     def _driven(self, moving: Sequence[int], constants: Array, frame: Array) -> SerialChain:
-        """A chain of joints that move, with the variables that move them."""
+        """A chain of joints that move, with the variables that move them; of a helical one a turn and a slide."""
         S, o = self.value_map
-        rows = [self.moving.index(number) for number in moving]
-        joints = tuple(self.joints[number] for number in moving)
-        (variables,) = np.nonzero(np.any(S[rows] != 0.0, axis=0))
-        offsets = o[rows] + np.array([joint.zero for joint in joints])
-        return SerialChain(joints, constants, variables, S[rows][:, variables], offsets, frame)
+        joints, rows, offsets = [], [], []
+        for number in moving:
+            joint, row = self.joints[number], self.moving.index(number)
+            parts = [(joint, 1.0)]
+            if joint.type == "helical":
+                parts = [(replace(joint, type="revolute"), 1.0), (replace(joint, type="prismatic"), joint.pitch)]
+            for part, factor in parts:
+                joints.append(part)
+                rows.append(factor * S[row])
+                offsets.append(factor * (o[row] + joint.zero))
+        values = np.array(rows).reshape(len(joints), S.shape[1])
+        (variables,) = np.nonzero(np.any(values != 0.0, axis=0))
+        return SerialChain(tuple(joints), constants, variables, values[:, variables], np.array(offsets), frame)

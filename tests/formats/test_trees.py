@@ -211,6 +211,8 @@ def test_what_is_wrong_is_said_with_its_place(case):
         ("couplings: [{joint: dip, follows: {pip: 1}, ratio: 2}]", "beside a mapping"),
         ("couplings: [{joint: dip, follows: pip}, {joint: dip, follows: pip}]", "found a second coupling"),
         ("couplings: [{joint: dip, follows: pip, ratio: 1e400}]", "ratio"),
+        ("couplings: [{joint: dip, follows: pip, ratio: 1e300}]", "multiply its values too far"),
+        ("couplings: [{joint: dip, follows: pip, ratio: 1e5}, {joint: pip, adds: index.mcp, ratio: 1e5}]", "too far"),
         ("tips: [index, thumb]", "found the unknown place 'thumb' of a tip"),
         ("tips: [index, index]", "found the tip 'index' twice"),
         ("tips: []", "found no tips"),

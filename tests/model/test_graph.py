@@ -14,10 +14,12 @@ import robokin
 from robokin.errors import InputError
 from robokin.formats import library_names, load_any
 from robokin.kinematics.forward import row_frames
+from robokin.kinematics.tips import tip_poses
 from robokin.mobility.assembly import assembled
-from robokin.model import Mechanism, Robot
+from robokin.model import Mechanism, Robot, Tree
 from robokin.model.graph import Coupling, Graph, GraphJoint, Tip
 from robokin.model.topology import topology_of
+from robokin.spatial import rotation_from_rpy, transform
 
 MOTIONS = {
     "revolute": lambda value: rot([0, 0, 1], value),
@@ -274,3 +276,25 @@ def test_what_is_no_graph_is_refused_with_a_sentence(parts, said):
 def test_an_unknown_tip_is_refused():
     with pytest.raises(InputError, match="found the unknown link 'thumb', expected one of a, b, c"):
         Graph(LINKS, JOINTS).chain("a", "thumb")
+
+
+@pytest.mark.parametrize("pitch", [0.02, -0.005, 0.0])
+def test_a_helical_joint_advances_along_its_axis(pitch):
+    """T = B Rot(z, v) Trans(0, 0, pitch v) A, with v = q + zero, beside a joint before and one after it."""
+    rng = np.random.default_rng(21)
+    B, A = (transform(rotation_from_rpy(rng.uniform(-1, 1, 3)), rng.uniform(-1, 1, 3)) for _ in range(2))
+    joints = (
+        GraphJoint("turn", "revolute", 0, 1, after=A),
+        GraphJoint("screw", "helical", 1, 2, before=B, after=A, pitch=pitch, zero=0.3),
+        GraphJoint("slide", "prismatic", 2, 3, before=B),
+    )
+    tree = Tree("screw", Graph(("a", "b", "c", "d"), joints, tips=(Tip("tip", 3),)))
+    assert tree.n == 3
+
+    def motion(turn, slide):
+        return transform(rotation_from_rpy([0.0, 0.0, turn]), [0.0, 0.0, slide])
+
+    for q in rng.uniform(-2, 2, (20, 3)):
+        v = q[1] + 0.3
+        expected = motion(q[0], 0) @ A @ B @ motion(v, pitch * v) @ A @ B @ motion(0, q[2])
+        np.testing.assert_allclose(tip_poses(tree, q)[0], expected, atol=1e-14)
