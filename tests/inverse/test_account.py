@@ -37,6 +37,25 @@ ALONE = arms.table(
     [(0.3, 0.3, 70.35), (0, 0.3, -82.62), (0, 0.2, 82.62), (0, -0.3, 180), (0, -0.2, 0), (0, -0.2, -135.38)]
 )
 
+# Where q3 is 0 axes 2, 4, 5 and 6 are parallel: a self-motion, whose curve paths follow into the complex next to it.
+NEXT_TO_FOUR_PARALLEL = (
+    (
+        [
+            (-0.12, 0, -122.28857446365217),
+            (0, 0.25, 90),
+            (0.03, 0, 90),
+            (-0.39, 0.02, 180),
+            (-0.29, 0.06, 0),
+            (-0.08, 0, 180),
+        ],
+        [29.999998487718965, -29.999952493509348, -4.1214123e-06, -60.00005539869249, 29.999960856008016, 90.000045775],
+    ),
+    (
+        [(0, 0, -90), (-0.39, 0.03, 90), (-0.3, 0.12, 90), (0, 0.26, 0), (0, 0.15, 0), (0, -0.19, 180)],
+        [-119.99999886632, -149.99999992774, 6.14813e-06, -119.99999984, 1.0915e-08, 5.20023e-07],
+    ),
+)
+
 SCARAS = ("cobra-s600", "kr5-scara-r350")
 
 
@@ -163,3 +182,15 @@ def test_both_circuits_of_four_bar_linkages(seed):
     assert result.complete
     assert result.families
     assert judge.faults(arm, scale, q, T, result, known) == []
+
+
+@pytest.mark.parametrize("k", range(len(NEXT_TO_FOUR_PARALLEL)))
+def test_paths_that_follow_a_self_motion_close_by_are_not_at_infinity(k):
+    rows, degrees = NEXT_TO_FOUR_PARALLEL[k]
+    arm, rng = arms.table(rows), np.random.default_rng(246)
+    q = np.radians(degrees) + 1e-12 * rng.standard_normal((4, 6))
+    q[0] = np.radians(degrees)
+    T = robokin.forward_kinematics(arm, q)
+    for i, result in enumerate(robokin.solve_ik(arm, T)):
+        assert "unanswered" not in judge.faults(arm, truth.Scale(arm), q[i], T[i], result, ())
+        assert not result.complete

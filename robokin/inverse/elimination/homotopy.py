@@ -235,7 +235,7 @@ class Homotopy:
                 tried += self._ends(closing, [self._far(i, open_) for i in starts])
                 verdict = _judged(self.loop, self.count, m, tried)
                 used[open_] = starts.stop
-        return _with_seeds_refined(self.loop, closing, verdict)
+        return _with_paths_near_motions(self.loop, closing, _with_seeds_refined(self.loop, closing, verdict), tried)
 
     def _close_by(self, closing: Array) -> list[_Begun]:
         """Starts for those of the targets beside which all solutions are known at two poses."""
@@ -320,7 +320,7 @@ def _judged(loop: Loop, count: int, m: int, tried: list[_Ends]) -> Account:
     target, values, _ = _united(loop, tried, "regular")
     number = np.bincount(target, minlength=m)
     found = np.stack([_number(m, ends.target, ends.regular) for ends in tried])
-    agrees = sound & (found == number)
+    agrees = _alike(sound & (found == number), np.stack([_number(m, ends.target, ends.infinite) for ends in tried]))
     real = np.abs(values.imag).max(axis=1, initial=0.0) < REAL
     whole = number == count
     if not whole.all():
@@ -355,6 +355,16 @@ def _judged(loop: Loop, count: int, m: int, tried: list[_Ends]) -> Account:
         of_one_start("lost"),
         whole | ((agrees.sum(axis=0) >= 2) & (number < count)),
     )
+
+
+def _alike(agrees: Flags, infinite: Index) -> Flags:
+    """(k, m) which of k starts agree on the regular ends, and of these with another on how many (k, m) are infinite.
+
+    Where only one agrees it is left as it is.
+    """
+    same = (infinite[:, None] == infinite[None]) & agrees[:, None] & agrees[None]
+    paired = agrees & (same.sum(axis=1) >= 2)
+    return np.where(agrees.sum(axis=0) >= 2, paired, agrees)
 
 
 def _united(loop: Loop, tried: list[_Ends], which: str) -> tuple[Index, Complex, Array]:
@@ -394,6 +404,32 @@ def _with_seeds_refined(loop: Loop, closing: Array, account: Account) -> Account
     closed[index[~near]] = False
     index, values = index[near], values[near]
     once = distinct(loop, index, values, SAME)
+    return replace(account, singular_index=index[once], singular_values=values[once], closed=closed)
+
+
+def _with_paths_near_motions(loop: Loop, closing: Array, account: Account, tried: list[_Ends]) -> Account:
+    """The account with the targets not closed at which paths may have gone astray instead of to infinity.
+
+    Next to a pose with a self-motion the curve of this, which goes to infinity where it is complex, nearly solves the
+    loop: a path may follow it out, past the solution where it would end. The real part of such an end is then close to
+    a singular solution, which becomes one of the singular configurations.
+    """
+    doubtful = account.closed & (account.infinite > 0)
+    wandering = [(ends.infinite | ends.singular) & doubtful[ends.target] for ends in tried]
+    target = np.concatenate([ends.target[chosen] for ends, chosen in zip(tried, wandering, strict=True)])
+    values = np.concatenate([ends.values[chosen] for ends, chosen in zip(tried, wandering, strict=True)])
+    near = np.abs(values.imag).max(axis=1, initial=0.0) < OUT
+    target, seeds = target[near], values[near].real
+    if not len(target):
+        return account
+    seeds, position, angle = refine(loop, closing, target, seeds, STEPS)
+    residual = np.hypot(position, angle)
+    astray = (residual < SEED) & ~regular(loop, seeds, np.zeros(len(seeds)), REGULAR)
+    index = np.concatenate([account.singular_index, target[astray]])
+    values = np.concatenate([account.singular_values, seeds[astray]])
+    once = distinct(loop, index, values, SAME)
+    closed = account.closed.copy()
+    closed[target[astray]] = False
     return replace(account, singular_index=index[once], singular_values=values[once], closed=closed)
 
 
