@@ -116,6 +116,13 @@ def test_files_of_one_name_have_ids_of_their_own(call, folder):
     refused(call("check", "dh", folder / "empty", *AGAINST), "found none in the folder")
 
 
+def test_an_empty_name_is_an_answer_that_cannot_be_read(call, folder):
+    items = call("check", "dh", "", folder / "ada" / "arm.yaml", "", *AGAINST, "--json").json["items"]
+    assert [(item["id"], item["status"]) for item in items] == [
+        ("", "unreadable"), ("arm.yaml", "pass"), ("", "unreadable"),
+    ]  # fmt: skip
+
+
 def test_a_file_called_like_an_option_is_a_file(call, folder, monkeypatch):
     monkeypatch.chdir(folder)
     for name, text in (("ada.yaml", table()), ("--against=ben.yaml", table("scara")), ("ben.yaml", table("scara"))):

@@ -13,7 +13,7 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import IO
 
 from robokin.errors import InputError, or_list, shown
@@ -61,7 +61,7 @@ def submissions(places: Sequence[str], follow: bool) -> list[Submission]:
     InputError for nothing but a folder without descriptions.
     """
     found: list[Submission] = []
-    single: list[str] = []
+    single: dict[int, str] = {}  # the place of each in `found`, and its path
     for place in places:
         if _is_folder(place, follow):
             inside = list(_descriptions(place, follow))
@@ -70,15 +70,16 @@ def submissions(places: Sequence[str], follow: bool) -> list[Submission]:
             if not inside:  # one who handed in nothing has a mark beside the others'
                 found.append(Submission(start or place, place, place, follow))
         elif is_path(place) or os.path.lexists(place):
-            single.append(place)
+            single[len(found)] = place
             found.append(Submission("", place, place, follow))
         else:
             found.append(Submission(place, place, None, follow))
     if len(places) == 1 and found[0].path == places[0] and _is_folder(places[0], follow):
         expected = f"expected descriptions, files that end with {or_list(ENDINGS)}"
         raise InputError(f"{shown(places[0], MOST_SHOWN)}: found none in the folder, {expected}")
-    names = iter(_names(single))
-    return [one if one.id else Submission(next(names), one.place, one.path, follow) for one in found]
+    for i, name in zip(single, _names([*single.values()]), strict=True):
+        found[i] = replace(found[i], id=name)
+    return found
 
 
 def _is_folder(place: str, follow: bool) -> bool:
