@@ -20,7 +20,8 @@ from robokin.arrays import Array
 from robokin.brief import Answer
 from robokin.errors import InputError
 from robokin.expected import described, expect_choice, expect_finite, expect_flag, expect_kind
-from robokin.model import Mechanism, Robot, Tree, WheeledBase, expect_robot
+from robokin.formats.part import tree_of
+from robokin.model import CoupledRobot, Mechanism, Robot, Tree, WheeledBase, expect_robot
 from robokin.units import Units
 
 if TYPE_CHECKING:
@@ -172,6 +173,8 @@ def singular(robot: Robot, task: TaskName | None = None, units: Units | None = N
 
 def dof(entry: Robot | Mechanism | WheeledBase | Tree, units: Units | None = None) -> Document:
     """What `robokin dof` says of a robot, a mechanism, a wheeled base or a tree. Raises InputTypeError."""
+    if isinstance(entry, CoupledRobot):
+        entry = tree_of(entry)
     if isinstance(entry, Tree):
         from robokin.records.freedom_records import tree_record
 

@@ -49,10 +49,15 @@ class RowPlace:
 
 
 def row_type(node: Node) -> JointType:
-    """The type of a row, by its name or its letter."""
+    """The type of a row, by its name or its letter; a helical one is a revolute one with a pitch."""
+    name = _type_name(node)
+    return JointType.REVOLUTE if name == "helical" else JointType(name)
+
+
+def _type_name(node: Node) -> str:
     if isinstance(node, Scalar) and node.text.upper() in TYPE_LETTERS:
-        return JointType(TYPE_LETTERS[node.text.upper()])
-    return JointType(choice_of(node, ROW_TYPES, "the type"))
+        return TYPE_LETTERS[node.text.upper()]
+    return choice_of(node, ROW_TYPES, "the type")
 
 
 def row_of(cells: MappingType[str, Node], place: RowPlace, convention: str, context: Context) -> Joint:
@@ -68,7 +73,7 @@ def row_of(cells: MappingType[str, Node], place: RowPlace, convention: str, cont
     shift = VariableCell(1, "")
     variable = "" if kind is None or convention in ("frames", "screws") else VARIABLE.get(kind, "")
     if kind is None:  # which of the cells hold the variable, and what limits are, is not known
-        for cell in ("theta", "d", "offset", "limits", "sense"):
+        for cell in ("theta", "d", "offset", "limits", "sense", "motion_limits", "pitch"):
             cells.pop(cell, None)
     if variable in cells:
         shift = attempt(shift, _shift, cells, variable, name, place, context)
@@ -81,7 +86,7 @@ def row_of(cells: MappingType[str, Node], place: RowPlace, convention: str, cont
             )
         )
     elif kind is JointType.FIXED:
-        for cell in ("offset", "limits", "sense"):
+        for cell in ("offset", "limits", "sense", "motion_limits", "pitch"):
             if cell in cells:
                 context.faults.add(
                     cells.pop(cell).mark.error(
@@ -95,9 +100,14 @@ def row_of(cells: MappingType[str, Node], place: RowPlace, convention: str, cont
             return 0.0
         return attempt(0.0, number_of, cells[cell], context, f"{cell} {where}", angle=angle)
 
-    limits = (-np.inf, np.inf)
+    limits = motion_limits = (-np.inf, np.inf)
     if "limits" in cells:
         limits = attempt(limits, limits_of, cells["limits"], turns, where, context)
+    if "motion_limits" in cells:
+        motion_limits = attempt(
+            motion_limits, limits_of, cells["motion_limits"], turns, f"of the motion {where}", context
+        )
+    pitch = attempt(0.0, _pitch, cells, where, context) if kind is not None else 0.0
     origin, axis = _placing(cells, where, convention, context)
     sense = attempt(1, sense_of, cells["sense"], where, context) if "sense" in cells else 1
     angles = (True, False, False, True, turns)
@@ -111,7 +121,26 @@ def row_of(cells: MappingType[str, Node], place: RowPlace, convention: str, cont
         axis=axis,
         texts=() if context.faults.count > before else _texts(cells, context),
         sense=sense * shift.sense,
+        pitch=pitch,
+        motion_limits=motion_limits,
     )
+
+
+def _pitch(cells: MappingType[str, Node], where: str, context: Context) -> float:
+    """What a helical row advances [m/rad], 0 of another. Raises DescriptionError for one of both without the other."""
+    helical = _type_name(cells["type"]) == "helical"
+    if "pitch" not in cells:
+        if helical:
+            raise cells["type"].mark.error(
+                f"found no 'pitch' {where}, expected what a helical row advances in one turn"
+            )
+        return 0.0
+    if not helical:
+        raise cells["pitch"].mark.error(f"found 'pitch' {where}, expected it on a helical row alone")
+    pitch = number_of(cells["pitch"], context, f"pitch {where}", angle=False)
+    if pitch == 0.0:
+        raise cells["pitch"].mark.error(f"found the pitch 0 {where}, expected an advance, or a revolute row")
+    return pitch / (2.0 * np.pi)
 
 
 def _placing(

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.errors import ExpressionError, shown
+from robokin.errors import ExpressionError, InputError, shown
 from robokin.formats.chain_forms import read_chain
 from robokin.formats.chain_parts import ChainParts
+from robokin.formats.couplings import couplings_of
 from robokin.formats.description_head import Head
 from robokin.formats.node_values import (
     Context,
@@ -25,6 +26,9 @@ from robokin.formats.plausibility import notes_on
 from robokin.formats.transform_expressions import position_texts
 from robokin.formats.yaml_tree import Mapping, Node, Scalar, describe
 from robokin.model import JointType, Robot
+from robokin.model.coupled_robot import driven
+from robokin.model.graph import Coupling
+from robokin.model.robot import graph_joint
 
 
 def read_robot(head: Head) -> Robot:
@@ -36,28 +40,49 @@ def read_robot(head: Head) -> Robot:
         attempt(np.eye(4), transform_of, fields[name], context, name) if name in fields else np.eye(4)
         for name in ("base", "tool")
     )
-    poses = attempt({}, poses_of, fields["poses"], chain.types, context) if "poses" in fields else {}
+    couplings: tuple[Coupling, ...] = ()
+    types = chain.types
+    if "couplings" in fields:
+        couplings = attempt((), _couplings, fields["couplings"], chain, context)
+        following = {coupling.joint for coupling in couplings if not coupling.own}
+        if types is not None and following:
+            moving = [row for row in chain.rows or () if row.moves]
+            types = tuple(row.type for row in moving if row.name not in following) if moving else None
+    poses = attempt({}, poses_of, fields["poses"], types, context) if "poses" in fields else {}
     context.faults.stop()
     assert chain.rows is not None and chain.convention is not None  # else there was a mistake
     base_texts = parameters_in_position(fields["base"], context) if "base" in fields else ()
-    robot = Robot(
-        name=head.name,
-        rows=chain.rows,
-        convention=chain.convention,  # type: ignore[arg-type]  # choice_of has made sure
-        id=head.id,
-        description=head.description,
-        source=head.source,
-        units=context.units,
-        parameters=head.parameters,
-        base=base,
-        tool=tool if np.array_equal(chain.tail, np.eye(4)) else chain.tail @ tool,
-        poses=poses,
-        texts=(
+    values = {
+        "name": head.name,
+        "rows": chain.rows,
+        "convention": chain.convention,
+        "id": head.id,
+        "description": head.description,
+        "source": head.source,
+        "units": context.units,
+        "parameters": head.parameters,
+        "base": base,
+        "tool": tool if np.array_equal(chain.tail, np.eye(4)) else chain.tail @ tool,
+        "poses": poses,
+        "texts": (
             *((f"base {axis}", text) for axis, text in base_texts),
             *((f"tool {axis}", text) for axis, text in _tool_texts(fields.get("tool"), context, chain)),
         ),
-    )
+    }
+    try:
+        robot = driven(values, couplings)
+    except InputError as error:  # a circle of couplings, or limits, which have no place of their own
+        place = fields["couplings"] if "couplings" in fields else fields.get("joints", fields["name"])
+        raise place.mark.error(str(error)) from None
     return replace(robot, notes=notes_on(context, robot))
+
+
+def _couplings(node: Node, chain: ChainParts, context: Context) -> tuple[Coupling, ...]:
+    """The couplings of a chain's joints; none where it could not be read."""
+    if chain.rows is None or chain.convention is None:
+        raise node.mark.silent().error("the joints are not known")
+    joints = tuple(graph_joint(row, chain.convention, i, i + 1, row.name, i) for i, row in enumerate(chain.rows))
+    return couplings_of(node, joints, context)
 
 
 def _tool_texts(node: Node | None, context: Context, chain: ChainParts) -> tuple[tuple[str, str], ...]:

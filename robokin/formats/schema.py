@@ -30,7 +30,7 @@ CONVENTIONS = ("standard", "modified", "frames")
 OTHER_FORMS = ("screws", "opw")
 """What `convention` may also say: ways to write a chain that are read as rows of `frames`."""
 
-ROW_TYPES = ("revolute", "prismatic", "fixed")
+ROW_TYPES = ("revolute", "prismatic", "helical", "fixed")
 SPACES = ("planar", "spherical", "spatial")
 
 COMMON: Fields = {
@@ -48,6 +48,7 @@ ROBOT: Fields = {
     "base": Field("transform", "fixed transform from the world to frame 0"),
     "joints": Field("rows", "the table: a list of rows, or one list for each column", required=True),
     "tool": Field("transform", "fixed transform from the last frame to the end effector"),
+    "couplings": Field("couplings", "joints whose values hang on those of others"),
     "poses": Field("poses", "named configurations, usable as --q NAME"),
 }
 
@@ -59,6 +60,7 @@ SCREWS: Fields = {
     "base": ROBOT["base"],
     "home": Field("transform", "the tool's pose in frame 0 at q = 0", required=True),
     "joints": Field("screw_rows", "the joints' axes in frame 0 at q = 0: rows, or one list for each column", True),
+    "couplings": ROBOT["couplings"],
     "poses": ROBOT["poses"],
 }
 
@@ -68,6 +70,7 @@ ETS: Fields = {
     "ets": Field("text", "elementary steps from the base to the tool: tz(0.3) Rz(q1) tx(0.1) Ry(-q2)", required=True),
     "limits": LIMIT_LIST,
     "tool": ROBOT["tool"],
+    "couplings": ROBOT["couplings"],
     "poses": ROBOT["poses"],
 }
 
@@ -86,6 +89,7 @@ OPW: Fields = {
     "senses": Field("six_senses", "six times 1 or -1; default 1"),
     "limits": LIMIT_LIST,
     "tool": ROBOT["tool"],
+    "couplings": ROBOT["couplings"],
     "poses": ROBOT["poses"],
 }
 
@@ -96,10 +100,15 @@ UNITS: Fields = {
 
 ROW: Fields = {
     "name": Field("text", "the joint's name"),
-    "type": Field("text", "revolute (R), prismatic (P) or fixed (F)", required=True, choices=ROW_TYPES),
+    "type": Field("text", "revolute (R), prismatic (P), helical (H) or fixed (F)", required=True, choices=ROW_TYPES),
     "limits": Field("limits", "[min, max] of q; absent: unlimited"),
     "offset": Field("number", "constant shift of the variable: theta = q + offset, or d = q + offset"),
     "sense": Field("sense", "-1: the variable enters with the other sign, theta = offset - q; default 1"),
+}
+
+MOTION: Fields = {
+    "pitch": Field("number", "what a helical row advances along its axis in one turn"),
+    "motion_limits": Field("limits", "[min, max] of the joint itself, where what is typed is not what it does"),
 }
 
 DH_ROW: Fields = {
@@ -108,12 +117,14 @@ DH_ROW: Fields = {
     "d": Field("number", "length along z; on a prismatic row only its variable"),
     "a": Field("number", "length along x"),
     "alpha": Field("number", "angle about x"),
+    **MOTION,
 }
 
 FRAME_ROW: Fields = {
     **ROW,
     "origin": Field("transform", "pose of the joint frame in the previous one at q = 0"),
     "axis": Field("axis", "x, y, z or [x, y, z]; default z"),
+    **MOTION,
 }
 
 TREE: Fields = {
@@ -150,12 +161,14 @@ TIP: Fields = {
 
 SCREW_ROW: Fields = {
     "name": ROW["name"],
-    "type": Field("text", "revolute (R) or prismatic (P)", required=True, choices=ROW_TYPES[:2]),
+    "type": Field("text", "revolute (R), prismatic (P) or helical (H)", required=True,
+                  choices=ROW_TYPES[:3]),
     "limits": ROW["limits"],
     "sense": ROW["sense"],
     "axis": Field("axis", "its direction in frame 0 at q = 0: x, y, z or [x, y, z]; default z"),
     "at": Field("place_in_space", "a point [x, y, z] on it in frame 0 at q = 0; default the origin"),
-}
+    **MOTION,
+}  # fmt: skip
 
 MECHANISM: Fields = {
     **COMMON,
@@ -304,7 +317,7 @@ def json_schema() -> dict[str, Any]:
     }
 
 
-TYPE_LETTERS = {"R": "revolute", "P": "prismatic", "F": "fixed"}
+TYPE_LETTERS = {"R": "revolute", "P": "prismatic", "F": "fixed", "H": "helical"}
 """Short names of the row types."""
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from graphlib import CycleError, TopologicalSorter
 
 import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import InputError, did_you_mean, shown
+from robokin.formats.couplings import couplings_of
 from robokin.formats.description_head import Head
 from robokin.formats.joint_table import rows_of
 from robokin.formats.node_values import (
@@ -16,17 +17,15 @@ from robokin.formats.node_values import (
     choice_of,
     fields_of,
     list_of,
-    number_of,
-    raw_number_of,
     text_of,
     transform_of,
 )
 from robokin.formats.robot_fields import poses_of
-from robokin.formats.schema import BRANCH, CONVENTIONS, COUPLING, MAX_ROWS, TIP
-from robokin.formats.yaml_tree import Mapping, Node, Scalar, describe
+from robokin.formats.schema import BRANCH, CONVENTIONS, MAX_ROWS, TIP
+from robokin.formats.yaml_tree import Mapping, Node, describe
 from robokin.model import Joint, JointType, Tree
-from robokin.model.graph import Coupling, Graph, GraphJoint, Tip
-from robokin.model.robot import row_constants
+from robokin.model.graph import Graph, GraphJoint, Tip
+from robokin.model.robot import graph_joint
 
 WORLD = "base"
 """The link that branches stand on which name none."""
@@ -63,7 +62,7 @@ def read_tree_fields(head: Head) -> Tree:
     ends = _ends(branches)
     joints = tuple(_joints(branches, ends, context))
     context.faults.stop()
-    couplings = tuple(attempt([], _couplings, fields["couplings"], joints, context)) if "couplings" in fields else ()
+    couplings = attempt((), couplings_of, fields["couplings"], joints, context) if "couplings" in fields else ()
     tips = tuple(attempt([], _tips, fields.get("tips"), branches, ends, context))
     context.faults.stop()
     links = (WORLD, *(f"{branch.name}.{row.name}" for branch in branches.values() for row in branch.rows))
@@ -71,7 +70,7 @@ def read_tree_fields(head: Head) -> Tree:
         graph = Graph(links, joints, base=base, tips=tips, couplings=couplings)
     except InputError as error:  # a circle of couplings, which has no place of its own
         raise fields.get("couplings", fields["branches"]).mark.error(str(error)) from None
-    types = tuple(JointType(graph.joints[number].type) for number in graph.variables)
+    types = tuple(JointType.of(graph.joints[number].turns) for number in graph.variables)
     poses = attempt({}, poses_of, fields["poses"], types, context) if "poses" in fields else {}
     context.faults.stop()
     return Tree(head.name, graph, head.id, head.description, head.source, context.units, head.parameters, poses)
@@ -143,86 +142,11 @@ def _joints(branches: dict[str, _Branch], ends: dict[str, tuple[str, Array]], co
         carried = tool @ branch.base
         for row in branch.rows:
             name = f"{branch.name}.{row.name}"
-            before, after = row_constants(row, branch.convention)
-            joints.append(
-                GraphJoint(
-                    name,
-                    row.type,
-                    links.index(parent),
-                    links.index(name),
-                    int(row.moves),
-                    carried @ before,
-                    after,
-                    zero=row.sense * row.offset,
-                    limits=row.limits,
-                    row=len(joints),
-                )
-            )
+            ends_of_row = links.index(parent), links.index(name)
+            joint = graph_joint(row, branch.convention, *ends_of_row, name, len(joints))
+            joints.append(replace(joint, before=carried @ joint.before))
             parent, carried = name, np.eye(4)
     return joints
-
-
-def _named(node: Node, joints: tuple[GraphJoint, ...]) -> GraphJoint:
-    """The moving joint that is called so: by its branch and name, or by its name alone where that is unique."""
-    text = text_of(node, "the name of a joint")
-    moving = [joint for joint in joints if joint.moves]
-    full = [joint for joint in moving if joint.name == text]
-    found = full or [joint for joint in moving if joint.name.partition(".")[2] == text]
-    if len(found) == 1:
-        return found[0]
-    names = [joint.name for joint in moving]
-    if found:
-        raise node.mark.error(f"found '{shown(text)}' in several branches, expected one of {', '.join(names)}")
-    hint = did_you_mean(text, names) or f", expected one of {', '.join(names[:12])}"
-    raise node.mark.error(f"found the unknown joint '{shown(text)}'{hint}")
-
-
-def _couplings(node: Node, joints: tuple[GraphJoint, ...], context: Context) -> list[Coupling]:
-    found: list[Coupling] = []
-    for item in list_of(node, "couplings: a list"):
-        coupling = context.faults.attempt(None, _coupling, item, joints, context)
-        if coupling is not None and coupling.joint in [one.joint for one in found]:
-            context.faults.add(item.mark.error(f"found a second coupling of {coupling.joint}, expected one with all"))
-        elif coupling is not None:
-            found.append(coupling)
-    return found
-
-
-def _coupling(node: Node, joints: tuple[GraphJoint, ...], context: Context) -> Coupling | None:
-    """One coupling, its ratios and offset in SI."""
-    before = context.faults.count
-    fields = fields_of(node, COUPLING, "a coupling", context.faults)
-    own = "adds" in fields
-    if own == ("follows" in fields):
-        raise node.mark.error("found no 'follows' and no 'adds' in a coupling, or both, expected one of them")
-    joint = context.faults.attempt(None, _named, fields["joint"], joints)
-    others = fields["adds" if own else "follows"]
-    pairs: list[tuple[Node, Node | None]] = [(others, fields.get("ratio"))]
-    if isinstance(others, Mapping):
-        if "ratio" in fields:
-            raise fields["ratio"].mark.error("found 'ratio' beside a mapping of joints to ratios, expected one of them")
-        pairs = [(Scalar(name, others.keys[name]), value) for name, value in others.entries.items()]
-        if not pairs:
-            raise others.mark.error("found no joints in a coupling, expected a mapping of joints to ratios")
-    ratios = []
-    for name, value in pairs:
-        other = context.faults.attempt(None, _named, name, joints)
-        number = 1.0
-        if value is not None:
-            number = context.faults.attempt(1.0, raw_number_of, value, context.scope, "the ratio")
-        if joint is not None and other is not None:
-            unit = context.factor(_turns(joint)) / context.factor(_turns(other))
-            ratios.append((other.name, number * unit if _turns(joint) != _turns(other) else number))
-    if joint is None or context.faults.count > before:
-        return None
-    offset = 0.0
-    if "offset" in fields:
-        offset = number_of(fields["offset"], context, "the offset of a coupling", angle=_turns(joint))
-    return Coupling(joint.name, tuple(ratios), offset, own)
-
-
-def _turns(joint: GraphJoint) -> bool:
-    return joint.type != JointType.PRISMATIC
 
 
 def _tips(

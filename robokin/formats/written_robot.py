@@ -10,7 +10,7 @@ from robokin.arrays import Array
 from robokin.formats.exact_numbers import angle_text, length_text, number_text, transform_text
 from robokin.formats.node_values import LONGEST, NO_WORD
 from robokin.formats.schema import VERSION
-from robokin.model import Joint, JointType, Robot, expect_robot
+from robokin.model import Joint, JointType, Robot, expect_robot, expect_uncoupled
 from robokin.units import Units
 
 PLAIN = re.compile(r"[A-Za-z_](?:[\w ./()²³-]*[\w.)])?")
@@ -27,7 +27,7 @@ def written(robot: Robot) -> str:
     Numbers are the shortest that read as the same value; parameters are resolved, notes left out. Of a joint with one
     limit the other is written as 1e6 m or rad. Raises InputTypeError for what is no robot.
     """
-    robot = expect_robot(robot)
+    robot = expect_uncoupled(expect_robot(robot))
     units = robot.units
     lines = [f"robokin: {VERSION}", f"name: {_text(robot.name or robot.id or 'robot')}"]
     for name in ("description", "source"):

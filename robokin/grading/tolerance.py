@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from robokin.errors import InputError
 from robokin.expected import expect_flag, expect_number
-from robokin.kernel.chain import chain_of, chain_size
+from robokin.kinematics.structure import arm_size
 from robokin.model import Robot, expect_robot
 
 ANSWER_PART = 1e-3
@@ -66,7 +66,7 @@ def default_tolerance(robot: Robot, *, table: bool = False) -> Tolerance:
     InputTypeError for what is no robot.
     """
     robot, table = expect_robot(robot), expect_flag(table, "table")
-    size = chain_size(chain_of(robot))
+    size = arm_size(robot)
     part = (TABLE_PART if table else ANSWER_PART) * size / robot.units.metres
     power = 10.0 ** math.floor(math.log10(part))
     digit = max(digit for digit in (1.0, 2.0, 5.0) if digit * power <= part * (1.0 + ROUNDING) or digit == 1.0)

@@ -13,6 +13,7 @@ from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_flag, expect_kind, expect_numbers, expect_whole
 from robokin.inverse.analysis import Task, analysis_of
+from robokin.inverse.coupled_joints import solve_coupled
 from robokin.inverse.full_turns import check_turns, with_full_turns, with_turn_counts
 from robokin.inverse.hold import check_held_limits, held_arm, own_near, with_held_joints
 from robokin.inverse.single_answer import FAR, result_of
@@ -20,7 +21,7 @@ from robokin.inverse.solutions import BatchResult, Question, Result
 from robokin.inverse.solve_blocks import BLOCK
 from robokin.inverse.target_block import Method, Request, TargetBlock
 from robokin.jobs.ordered_map import MOST_CORES, ordered_map
-from robokin.model import Robot, expect_robot
+from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.spatial import nearest_rotation, rotation_error, transform
 from robokin.spatial.rotations import DIGITS_LOST
 from robokin.spatial.transforms import FARTHEST
@@ -97,6 +98,15 @@ def solve_many(
     cores = None if cores is None else expect_whole(cores, "cores", 1, MOST_CORES)
     if hold is not None:
         expect_kind(hold, Mapping, "hold", "a mapping of joints (from 0) to values, such as {2: 0.35}")
+    if isinstance(robot, CoupledRobot):
+        if hold:
+            raise InputError(f"hold: {robot.coupled}, expected a robot whose joints move one by one")
+
+        def free(arm: Robot, T: Array) -> BatchResult:
+            return solve_many(arm, T, False, None, method, task, None, seed, False, None, motions, cores)
+
+        poses = target_poses(T).reshape(-1, 4, 4)
+        return solve_coupled(robot, poses, free, task, most, seed, limits, near, turns)
     if hold:
         arm = held_arm(robot, hold)
         if limits:

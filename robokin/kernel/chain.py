@@ -22,7 +22,7 @@ from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.kernel.arm_size import axis_path
 from robokin.kernel.facts import fact
-from robokin.model import Joint, JointType, Robot
+from robokin.model import Joint, JointType, Robot, expect_uncoupled
 from robokin.model.robot import row_constants
 from robokin.spatial import exact, invert, rotation_transform, translation_transform, z_to
 
@@ -52,8 +52,11 @@ class Chain(Brief):
 
 @fact
 def chain_of(robot: Robot) -> Chain:
-    """The chain of a robot, from its base to its tool."""
-    part = robot.graph.chain("base", "tool")
+    """The chain of a robot, from its base to its tool.
+
+    Raises InputError for a robot whose joints do not move one by one: of its `motion` it is asked.
+    """
+    part = expect_uncoupled(robot).graph.chain("base", "tool")
     start = (invert(part.constants[0]) @ part.base)[:3, 3]
     return near_the_arm(Chain(np.stack([exact(C) for C in part.constants]), robot.revolute, part.offsets, start))
 

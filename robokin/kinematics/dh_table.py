@@ -22,7 +22,7 @@ from robokin.expected import expect_choice
 from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.frames import pose
 from robokin.kinematics.common_normal import FAR_FEET, PARALLEL, NormalStep, normal_step, turn, turn_and_shift
-from robokin.model import Joint, JointType, Robot, expect_robot
+from robokin.model import Joint, JointType, Robot, expect_robot, expect_uncoupled
 from robokin.model.robot import Convention, row_constants
 from robokin.spatial import exact, invert
 
@@ -55,7 +55,7 @@ def to_convention(robot: Robot, convention: Convention) -> Robot:
     Source: J. Denavit and R. S. Hartenberg, A kinematic notation for lower-pair mechanisms based on matrices,
     J. Applied Mechanics 22, 1955; modified tables as J. J. Craig, Introduction to Robotics, 1986, has them.
     """
-    robot = expect_robot(robot)
+    robot = expect_uncoupled(expect_robot(robot))
     expect_choice(convention, CONVENTIONS, "convention")
     if robot.convention == convention:
         return robot

@@ -16,7 +16,7 @@ from robokin.kernel.chain import chain_of
 from robokin.kernel.columns import BLOCK, ChainProgram, Constant
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import frames, pose, run
-from robokin.model import Robot, expect_robot
+from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.spatial import exact
 
 SHARE = 8 * BLOCK
@@ -32,11 +32,12 @@ def forward_kinematics(robot: Robot, q: ArrayLike, cores: int | None = 1) -> Arr
     Source: J. Denavit and R. S. Hartenberg, A kinematic notation for lower-pair mechanisms based on matrices,
     J. Applied Mechanics 22, 1955; modified tables as J. J. Craig, Introduction to Robotics, 1986, has them.
     """
-    q, chain = joint_values(robot, q), chain_of(robot)
+    q, moving = joint_motions(robot, q)
+    chain = chain_of(moving)
     cores = None if cores is None else expect_whole(cores, "cores", 1, MOST_CORES)
     if cores == 1:
         return pose(chain, q)
-    rows = q.reshape(math.prod(q.shape[:-1]), robot.n)
+    rows = q.reshape(math.prod(q.shape[:-1]), moving.n)
     T = np.empty((len(rows), 4, 4))
 
     def fill(start: int) -> None:
@@ -55,8 +56,8 @@ def link_frames(robot: Robot, q: ArrayLike) -> Array:
     Raises InputError when q has another length than n.
     Source: Denavit and Hartenberg 1955, Craig 1986, as for `forward_kinematics`.
     """
-    q = joint_values(robot, q)
-    return run(_row_program(robot, False), q)
+    q, moving = joint_motions(robot, q)
+    return run(_row_program(moving, False), q)
 
 
 def row_frames(robot: Robot, q: ArrayLike) -> Array:
@@ -64,8 +65,8 @@ def row_frames(robot: Robot, q: ArrayLike) -> Array:
 
     q: (..., n) joint values in file order [rad | m]. Returns (..., rows, 4, 4) [m].
     """
-    q = joint_values(robot, q)
-    return run(_row_program(robot, True), q)
+    q, moving = joint_motions(robot, q)
+    return run(_row_program(moving, True), q)
 
 
 def joint_frames(robot: Robot, q: ArrayLike) -> Array:
@@ -73,8 +74,19 @@ def joint_frames(robot: Robot, q: ArrayLike) -> Array:
 
     q: (..., n) joint values in file order [rad | m]. Returns (..., n + 1, 4, 4) [m].
     """
+    q, moving = joint_motions(robot, q)
+    return frames(chain_of(moving), q)
+
+
+def joint_motions(robot: Robot, q: ArrayLike) -> tuple[Array, Robot]:
+    """The values (..., m) of the joints that q (..., n) [rad | m] moves, and the arm whose joints they are.
+
+    These are q and the robot itself, but for one whose joints hang on each other.
+    """
     q = joint_values(robot, q)
-    return frames(chain_of(robot), q)
+    if isinstance(robot, CoupledRobot):
+        return robot.drive.motions(q), robot.free_motion
+    return q, robot
 
 
 def joint_values(robot: Robot, q: ArrayLike) -> Array:

@@ -10,8 +10,8 @@ from robokin.arrays import Array
 from robokin.expected import expect_choice
 from robokin.kernel.chain import chain_of
 from robokin.kernel.geometric_jacobian import jacobian as chain_jacobian
-from robokin.kinematics.forward import joint_values
-from robokin.model import Robot
+from robokin.kinematics.forward import joint_motions
+from robokin.model import CoupledRobot, Robot
 
 
 def jacobian(robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base") -> Array:
@@ -19,10 +19,11 @@ def jacobian(robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base"
 
     q: (..., n) [rad | m]. Returns (..., 6, n) [m/rad | 1, 1 | 0]. The twist is that of the tool's
     origin, in the axes of the world (`base`) or of the tool (`tool`). A revolute joint about z through
-    o gives the column (z × (p - o), z), a prismatic one (z, 0).
+    o gives the column (z × (p - o), z), a prismatic one (z, 0); a variable that moves several joints the sum of theirs.
     Raises InputError when q has another length than n, and for another frame.
     Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, eq. (3.30).
     """
     expect_choice(frame, ("base", "tool"), "frame")
-    q = joint_values(robot, q)
-    return chain_jacobian(chain_of(robot), q, frame)
+    q, moving = joint_motions(robot, q)
+    J = chain_jacobian(chain_of(moving), q, frame)
+    return J @ robot.drive.S if isinstance(robot, CoupledRobot) else J

@@ -11,11 +11,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from robokin.arrays import Array
 from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.facts import fact
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
-from robokin.model import Robot
+from robokin.model import CoupledRobot, Robot
 
 SAME = 1e-6
 """Sines of angles, and distances as parts of the arm's size, below which axes are taken as parallel or
@@ -44,20 +45,21 @@ class Structure:
 
 @fact
 def structure_of(robot: Robot) -> Structure:
-    """The structure of a robot."""
+    """The structure of a robot; joints, and the dimension, of one whose joints hang on others count its variables."""
+    if isinstance(robot, CoupledRobot):
+        joints = structure_of(robot.free_motion)
+        return Structure(joints.arm, joints.wrist, robot.n, dimension_of(robot))
     axes = _Axes(robot)
-    return Structure(_arm_class(robot.types, axes), _wrist(robot.types, axes), robot.n, _dimension(robot, axes))
+    return Structure(_arm_class(robot.types, axes), _wrist(robot.types, axes), robot.n, dimension_of(robot))
 
 
 class _Axes:
     """The joint axes at a generic configuration, directions z: (n, 3) and points o: (n, 3) on them."""
 
     def __init__(self, robot: Robot) -> None:
-        # An arbitrary seed; the values stay within ±60° and ±1 m, away from the stretched arm.
-        self.q = np.random.default_rng(20).uniform(-1.0, 1.0, robot.n)
-        frames = joint_frames(robot, self.q)
+        frames = joint_frames(robot, generic_values(robot))
         self.z, self.o = frames[:-1, :3, 2], frames[:-1, :3, 3]
-        self.size = chain_size(chain_of(robot))
+        self.size = arm_size(robot)
 
     def parallel(self, *joints: int) -> bool:
         """Whether the axes have one direction."""
@@ -122,13 +124,25 @@ def _wrist(types: str, axes: _Axes) -> str:
     return f"two axes, {n - 1} and {n}"
 
 
-def _dimension(robot: Robot, axes: _Axes) -> int:
+def dimension_of(robot: Robot) -> int:
     """The Jacobian's rank with lengths measured in the arm's size."""
     if not robot.n:
         return 0
-    J = jacobian(robot, axes.q)
-    J[:3] /= axes.size
+    size = arm_size(robot)
+    J = jacobian(robot, generic_values(robot))
+    J[:3] /= size
     sliding = ~robot.revolute
-    J[:, sliding] *= axes.size
+    J[:, sliding] *= size
     singular = np.linalg.svd(J, compute_uv=False)
     return int(np.sum(singular > SAME * singular[0]))
+
+
+def generic_values(robot: Robot) -> Array:
+    """Joint values (n,) [rad | m] at which nothing is special but by chance."""
+    # An arbitrary seed; the values stay within ±60° and ±1 m, away from the stretched arm.
+    return np.random.default_rng(20).uniform(-1.0, 1.0, robot.n)
+
+
+def arm_size(robot: Robot) -> float:
+    """The arm's size [m] (see `chain_size`)."""
+    return chain_size(chain_of(robot.free_motion if isinstance(robot, CoupledRobot) else robot))

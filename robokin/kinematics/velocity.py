@@ -22,12 +22,11 @@ from robokin.arrays import Array, Index
 from robokin.brief import Answer, Brief
 from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_finite
-from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.facts import fact
 from robokin.kernel.joint_axes import nearest_point
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
-from robokin.kinematics.structure import structure_of
+from robokin.kinematics.structure import arm_size, structure_of
 from robokin.model import Robot, expect_robot
 
 TaskName = Literal["pose", "position", "orientation"]
@@ -110,7 +109,7 @@ def motion_task(robot: Robot, name: TaskName | None = None) -> MotionTask:
 
 @fact
 def _task(robot: Robot, name: TaskName | None) -> MotionTask:
-    size = chain_size(chain_of(robot))
+    size = arm_size(robot)
     # Arbitrary configurations: what holds at them but for chance holds nearly everywhere.
     q = np.random.default_rng(7).uniform(-1.0, 1.0, (8, robot.n)) * np.where(robot.revolute, 1.0, size)
     J = scaled(robot, jacobian(robot, q), size)
@@ -194,7 +193,7 @@ def lost_directions(
         return []
     F = joint_frames(robot, q)
     centre = wrist_centre(robot, F)
-    points = [(f"joint {k + 1}", F[k, :3, 3]) for k in range(robot.n - 1, -1, -1)]
+    points = [(f"joint {k + 1}", F[k, :3, 3]) for k in range(len(F) - 2, -1, -1)]
     if centre is not None:
         points = [("the wrist centre", centre)]
     offsets = [(name, (point - F[-1, :3, 3]) / kind.size) for name, point in points]

@@ -39,7 +39,8 @@ class GraphJoint(Brief):
     type: as in the description, `revolute`, `prismatic`, `helical`, `fixed` or another; freedoms: f, 0 where it is
     fixed. before, after: (4, 4) [m] the constant transforms before and after the motion, NaN where the description
     says no axis. pitch [m/rad]: a helical joint's advance. zero [rad | m]: what is added to the value. limits
-    [rad | m]: of the variable. row: the number of the joint in the description, where a joint of many links is one.
+    [rad | m]: of the variable, motion_limits of the joint's own value. row: the number of the joint in the description,
+    where a joint of many links is one.
     """
 
     name: str
@@ -53,6 +54,7 @@ class GraphJoint(Brief):
     zero: float = 0.0
     limits: tuple[float, float] = (-np.inf, np.inf)
     row: int = 0
+    motion_limits: tuple[float, float] = (-np.inf, np.inf)
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -63,6 +65,11 @@ class GraphJoint(Brief):
     def moves(self) -> bool:
         """Whether it has a value."""
         return self.freedoms > 0
+
+    @property
+    def turns(self) -> bool:
+        """Whether its value is an angle, as a helical joint's is too; else it is a length."""
+        return self.type != "prismatic"
 
 
 @dataclass(frozen=True)

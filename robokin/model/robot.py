@@ -17,7 +17,7 @@ from robokin.brief import Answer, Brief
 from robokin.errors import InputError, Note, shown
 from robokin.expected import expect_kind, expect_numbers
 from robokin.model.graph import Graph, GraphJoint, Tip
-from robokin.spatial import exact, invert, z_to
+from robokin.spatial import exact, invert, translation_transform, z_to
 from robokin.spatial.dh import modified_dh, standard_dh
 from robokin.units import Units
 
@@ -26,6 +26,8 @@ Convention = Literal["standard", "modified", "frames"]
 LIMIT_TOLERANCE = 1e-9
 """A joint value this far [rad | m] outside its limits is still within: limits are inclusive, and a
 value that went through a change of units or a solver lands within rounding of them."""
+
+NO_LIMITS = (-np.inf, np.inf)
 
 HALF_TURN = np.diag([1.0, -1.0, -1.0, 1.0])
 """F, half a turn about x; its own inverse."""
@@ -45,6 +47,11 @@ class JointType(StrEnum):
     PRISMATIC = "prismatic"
     FIXED = "fixed"
 
+    @classmethod
+    def of(cls, turns: bool) -> JointType:
+        """That of a variable: an angle or a length."""
+        return cls.REVOLUTE if turns else cls.PRISMATIC
+
     @property
     def letter(self) -> str:
         """R, P or F, as in `RRPRRR`."""
@@ -60,7 +67,9 @@ class Joint(Brief):
     `frames` convention the row is `origin` (4, 4), then the motion about or along `axis` (3,). `sense` is the sign with
     which the variable enters: theta = sense · q + offset (d of a slide, the motion of a `frames` row), 1 or -1.
     `texts` are the cells that name parameters, as they are written (`("a", "l1/2")`); of an origin the
-    coordinates `x`, `y`, `z`.
+    coordinates `x`, `y`, `z`. `pitch` [m/rad] is what a helical row, a revolute one that slides as it turns, advances
+    along its axis, `motion_limits` what the joint itself may do, where that is not what is typed; only a `CoupledRobot`
+    has such rows.
     """
 
     name: str
@@ -75,6 +84,8 @@ class Joint(Brief):
     axis: Array | None = None
     texts: tuple[tuple[str, str], ...] = ()
     sense: int = 1
+    pitch: float = 0.0
+    motion_limits: tuple[float, float] = (-np.inf, np.inf)
 
     def __post_init__(self) -> None:
         """Make the arrays read-only, limits beyond `NO_LIMIT` none; refuse those between which there is no number."""
@@ -124,6 +135,7 @@ class Robot(Answer):
 
     def __post_init__(self) -> None:
         """Make every array and mapping read-only; refuse poses of the wrong length."""
+        self._check_rows()
         for name, pose in self.poses.items():
             if np.shape(pose) != (self.n,):
                 raise InputError(f"pose '{name}' has {np.size(pose)} values, expected {self.n}: one a joint")
@@ -132,6 +144,11 @@ class Robot(Answer):
         object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
         object.__setattr__(self, "base", read_only(self.base))
         object.__setattr__(self, "tool", read_only(self.tool))
+
+    def _check_rows(self) -> None:
+        """Raise InputError for rows that one variable each does not move."""
+        if any(row.pitch or row.motion_limits != NO_LIMITS for row in self.rows):
+            raise InputError("found a helical row or limits of its motion, expected a CoupledRobot")
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
@@ -168,15 +185,7 @@ class Robot(Answer):
     @cached_property
     def graph(self) -> Graph:
         """The table as a graph: link 0 has the base's frame, link i the frame after row i; the tip is the tool."""
-        joints = []
-        for i, row in enumerate(self.rows):
-            before, after = row_constants(row, self.convention)
-            zero = row.sense * row.offset
-            joints.append(
-                GraphJoint(
-                    row.name, row.type, i, i + 1, int(row.moves), before, after, zero=zero, limits=row.limits, row=i
-                )
-            )
+        joints = [graph_joint(row, self.convention, i, i + 1, row.name, i) for i, row in enumerate(self.rows)]
         links = ("base", *(str(i + 1) for i in range(len(joints))))
         return Graph(links, tuple(joints), base=self.base, tips=(Tip("tool", len(joints), self.tool),))
 
@@ -209,6 +218,17 @@ def expect_robot(value: object, argument: str = "robot") -> Robot:
     name = f"'{shown(value)}'" if isinstance(value, str) else "name_or_path"
     robot: Robot = expect_kind(value, Robot, argument, f"a Robot, as robokin.load({name}) gives it")
     return robot
+
+
+def graph_joint(row: Joint, convention: str, parent: int, child: int, name: str, number: int) -> GraphJoint:
+    """A row as a joint of a graph between two links, by their numbers."""
+    before, after = row_constants(row, convention)
+    kind, zero = str(row.type), row.sense * row.offset
+    if row.pitch:  # a graph's joint advances from where it would stand at the zero of its turn
+        kind, after = "helical", translation_transform(np.array([0.0, 0.0, -row.pitch * zero])) @ after
+    return GraphJoint(
+        name, kind, parent, child, int(row.moves), before, after, row.pitch, zero, row.limits, number, row.motion_limits
+    )  # fmt: skip
 
 
 def row_constants(row: Joint, convention: str) -> tuple[Array, Array]:

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,9 +19,10 @@ from robokin.arrays import Array, Flags, read_only
 from robokin.brief import Answer
 from robokin.errors import InputError, Note, shown
 from robokin.expected import expect_kind, expect_numbers
+from robokin.model.coupled_robot import CoupledRobot, drive_of, driven
 from robokin.model.graph import Graph, GraphJoint
 from robokin.model.robot import Joint, JointType, Robot, within
-from robokin.spatial import exact
+from robokin.spatial import exact, translation_transform
 from robokin.units import Units
 
 MOST_LISTED = 24
@@ -94,11 +96,12 @@ class Tree(Answer):
         for place, number in enumerate(self.graph.moving):
             (led,) = np.nonzero(S[place])
             joint = self.graph.joints[number]
-            if joint.name not in following or len(led) != 1:
+            if len(led) != 1:
                 continue
-            implied = sorted((bound - o[place]) / S[place, led[0]] for bound in joint.limits)
-            low, high = limits[led[0]]
-            limits[led[0]] = max(low, implied[0]), min(high, implied[1])
+            for bounds in (joint.motion_limits, joint.limits)[: 1 + (joint.name in following)]:
+                implied = sorted((bound - o[place]) / S[place, led[0]] for bound in bounds)
+                low, high = limits[led[0]]
+                limits[led[0]] = max(low, implied[0]), min(high, implied[1])
             if limits[led[0], 0] > limits[led[0], 1]:
                 raise InputError(
                     f"joint {shown(joint.name)} follows {shown(self.joints[led[0]].name)}, and no value is within "
@@ -121,7 +124,10 @@ class Tree(Answer):
 
         Raises InputError when q has another length than n.
         """
-        return within(self.limits, self.values_of(q))
+        values = self.values_of(q)
+        S, o = self.graph.value_map
+        own = np.array([self.graph.joints[number].motion_limits for number in self.graph.moving]).reshape(-1, 2)
+        return within(self.limits, values) & within(own, values @ S.T + o)
 
     def values_of(self, q: ArrayLike) -> Array:
         """q: (..., n) [rad | m] as an array (..., n) of floats.
@@ -139,8 +145,9 @@ class Tree(Answer):
     def robot(self, tip: str | None = None, root: str | None = None) -> Robot:
         """The chain from a link (by default the root) to a tip or a link, as a robot of the `frames` convention.
 
-        Without a tip the only one is meant. Raises InputError where there are several, where no joints lead from one
-        to the other, and where a joint of the chain hangs on another.
+        Without a tip the only one is meant. Where joints of the chain hang on others it is a `CoupledRobot`, whose q
+        are the variables that move it. Raises InputError where there are several tips, and where no joints lead from
+        one to the other.
         """
         if tip is None:
             if len(self.tips) != 1:
@@ -148,44 +155,50 @@ class Tree(Answer):
             (tip,) = self.tips
         start = self.graph.links[self.graph.root] if root is None else root
         way, tool = self.graph.way(start, tip)
-        self._refuse_coupled(way, tip)
+        S, o = self.graph.value_map
+        moving = [number for number in way if self.graph.joints[number].moves]
+        values = [self.graph.moving.index(number) for number in moving]
+        (led,) = np.nonzero(np.any(S[values] != 0.0, axis=0))
+        # In the order of the way; what stands on another way comes where it first moves something on this one.
+        order = sorted(led.tolist(), key=lambda place: min(np.flatnonzero(S[values, place])))
+        parts: dict[str, Any] = {
+            "name": self.name,
+            "convention": "frames",
+            "id": self.id,
+            "description": self.description,
+            "source": self.source,
+            "units": self.units,
+            "parameters": self.parameters,
+            "base": self.graph.frame_of(start),
+            "poses": {name: pose[order] for name, pose in self.poses.items()},
+            "notes": self.notes,
+        }
+        joints = [self.graph.joints[number] for number in moving]
+        coupled = {coupling.joint: coupling for coupling in self.graph.couplings}
+        plain = not any(joint.name in coupled for joint in joints)
+        self._refuse_unknown(joints, tip)
         rows, tool = _rows([self.graph.joints[number] for number in way], tool)
-        own = [place for place, number in enumerate(self.graph.variables) if number in way]
-        order = sorted(own, key=lambda place: way.index(self.graph.variables[place]))
-        return Robot(
-            name=self.name,
-            rows=rows,
-            convention="frames",
-            id=self.id,
-            description=self.description,
-            source=self.source,
-            units=self.units,
-            parameters=self.parameters,
-            base=self.graph.frame_of(start),
-            tool=tool,
-            poses={name: pose[order] for name, pose in self.poses.items()},
-            notes=self.notes,
-        )
+        parts |= {"rows": rows, "tool": tool}
+        if plain and not any(row.pitch for row in rows):
+            return driven(parts, ())
+        chosen = [self.joints[place] for place in order]
+        variables = [Joint(one.name, JointType.of(one.turns), limits=one.limits, pitch=one.pitch) for one in chosen]
+        couplings = tuple(coupled[joint.name] for joint in joints if joint.name in coupled)
+        drive = drive_of([row for row in rows if row.moves], variables, S[values][:, order], o[values], couplings)
+        return CoupledRobot(**parts, drive=drive)
 
     def listed_tips(self) -> str:
         """The names of the tips in a line."""
         more = ", …" if len(self.tips) > MOST_LISTED else ""
         return ", ".join(shown(name) for name in self.tips[:MOST_LISTED]) + more
 
-    def _refuse_coupled(self, way: tuple[int, ...], tip: str) -> None:
-        """Raise InputError for a chain whose joints do not move one by one."""
-        coupled = {coupling.joint: coupling for coupling in self.graph.couplings}
-        for joint in (self.graph.joints[number] for number in way):
-            if joint.moves and joint.name in coupled:
-                others = ", ".join(shown(name) for name, _ in coupled[joint.name].ratios)
-                raise InputError(
-                    f"joint {shown(joint.name)} on the way to {shown(tip)} hangs on {others}, "
-                    "expected a chain whose joints move one by one"
-                )
-            if joint.moves and joint.type not in (JointType.REVOLUTE, JointType.PRISMATIC):
+    def _refuse_unknown(self, joints: Sequence[GraphJoint], tip: str) -> None:
+        """Raise InputError for a joint of another kind than those of chains."""
+        for joint in joints:
+            if joint.type not in (JointType.REVOLUTE, JointType.PRISMATIC, "helical"):
                 raise InputError(
                     f"joint {shown(joint.name)} on the way to {shown(tip)} is {shown(joint.type)}, "
-                    "expected revolute and prismatic joints"
+                    "expected revolute, prismatic and helical joints"
                 )
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
@@ -223,9 +236,19 @@ def _rows(joints: Sequence[GraphJoint], tool: Array) -> tuple[tuple[Joint, ...],
         axis = joint.after[2, :3] if through else np.array([0.0, 0.0, 1.0])
         whole = np.round(axis)
         axis = np.where(np.abs(axis - whole) <= ROUND_AXIS, whole, axis) + 0.0
-        kind = JointType(joint.type)
+        if joint.pitch and joint.zero:  # a row advances from where it stands at the zero of its variable
+            origin = origin @ translation_transform(joint.pitch * joint.zero * axis)
         rows.append(
-            Joint(joint.name, kind, offset=joint.zero, limits=joint.limits, origin=exact(carried @ origin), axis=axis)
+            Joint(
+                joint.name,
+                JointType.of(joint.turns),
+                offset=joint.zero,
+                limits=joint.limits,
+                origin=exact(carried @ origin),
+                axis=axis,
+                pitch=joint.pitch,
+                motion_limits=joint.motion_limits,
+            )
         )
         carried = np.eye(4) if through else joint.after
     return tuple(rows), exact(carried @ tool)

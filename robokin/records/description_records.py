@@ -11,7 +11,7 @@ from robokin.errors import DescriptionError, InputError, Note
 from robokin.formats.library import load_any
 from robokin.kinematics.structure import structure_of
 from robokin.mobility.count import grubler
-from robokin.model import Joint, Mechanism, Robot, Tree, WheeledBase
+from robokin.model import CoupledRobot, Joint, Mechanism, Robot, Tree, WheeledBase
 from robokin.model.joint_units import in_units, joint_factors
 from robokin.records.envelope import SCHEMA, envelope
 from robokin.records.pose_records import poses_in
@@ -26,7 +26,7 @@ ZERO_DECIMALS = 9
 
 def kind_of(entry: Robot | Mechanism | WheeledBase | Tree) -> str:
     """`robot`, `mechanism`, `wheeled` or `tree`."""
-    return KINDS[type(entry)]
+    return next(name for kind, name in KINDS.items() if isinstance(entry, kind))
 
 
 def zero_record(robot: Robot, units: Units) -> dict[str, Any]:
@@ -91,10 +91,12 @@ def _place(said: Note | DescriptionError) -> dict[str, Any]:
 def robot_record(robot: Robot, units: Units) -> dict[str, Any]:
     """All that is known of a robot, in the given units."""
     structure = structure_of(robot)
-    rows = []
-    variables = iter(range(1, robot.n + 1))
-    for i, row in enumerate(robot.rows, start=1):
-        rows.append(_row_record(i, row, f"q{next(variables)}" if row.moves else None, robot.convention, units))
+    own = {joint.name: f"q{number}" for number, joint in enumerate(robot.joints, start=1)}
+    rows = [
+        _row_record(i, row, own.get(row.name) if row.moves else None, robot.convention, units)
+        for i, row in enumerate(robot.rows, start=1)
+    ]
+    coupled = {"couplings": _couplings(robot, units)} if isinstance(robot, CoupledRobot) else {}
     factors = joint_factors(robot, units)
     return {
         **envelope("robot", robot.id, units),
@@ -116,8 +118,28 @@ def robot_record(robot: Robot, units: Units) -> dict[str, Any]:
         "tool": poses_in(robot.tool.copy(), units).tolist(),
         "at_zero": zero_record(robot, units),
         "rows": rows,
+        **coupled,
         "poses": {name: in_units(q, factors).tolist() for name, q in robot.poses.items()},
     }
+
+
+def _couplings(robot: CoupledRobot, units: Units) -> list[dict[str, Any]]:
+    """What the joints of a robot hang on, in the given units."""
+    kinds = {row.name: row.type for row in robot.rows} | {joint.name: joint.type for joint in robot.joints}
+
+    def factor(name: str) -> float:
+        return units.metres if kinds.get(name) == "prismatic" else units.radians
+
+    found = []
+    for coupling in robot.drive.couplings:
+        mine = factor(coupling.joint)
+        ratios = [
+            {"joint": other, "ratio": ratio if factor(other) == mine else ratio * factor(other) / mine}
+            for other, ratio in coupling.ratios
+        ]
+        offset = float(in_units(np.array(coupling.offset), mine))
+        found.append({"joint": coupling.joint, "own": coupling.own, "ratios": ratios, "offset": offset})
+    return found
 
 
 def _row_record(i: int, row: Joint, variable: str | None, convention: str, units: Units) -> dict[str, Any]:
@@ -128,19 +150,22 @@ def _row_record(i: int, row: Joint, variable: str | None, convention: str, units
         return float(in_units(np.array(value), units.metres))
 
     turns = row.type == "revolute"
+    kind = "helical" if row.pitch else str(row.type)
     own = in_angle if turns else in_length
-    record: dict[str, Any] = {"i": i, "name": row.name, "type": str(row.type), "variable": variable}
+    record: dict[str, Any] = {"i": i, "name": row.name, "type": kind, "variable": variable}
     if convention == "frames":
         origin = np.eye(4) if row.origin is None else row.origin
         record["origin"] = poses_in(origin.copy(), units).tolist()
-        record["axis"] = None if row.axis is None or variable is None else row.axis.tolist()
+        record["axis"] = None if row.axis is None or not row.moves else row.axis.tolist()
     else:
         record["theta"] = None if turns else in_angle(row.theta)
         record["d"] = None if row.type == "prismatic" else in_length(row.d)
         record["a"] = in_length(row.a)
         record["alpha"] = in_angle(row.alpha)
-    record["offset"] = own(row.offset) if variable else None
-    record["sense"] = row.sense if variable else None
+    record["offset"] = own(row.offset) if row.moves else None
+    record["sense"] = row.sense if row.moves else None
+    if row.pitch:
+        record["pitch"] = in_length(row.pitch * 2.0 * np.pi)
     low, high = row.limits
     record["limits"] = None if np.isinf(low) else [own(low), own(high)]
     return record
@@ -152,6 +177,11 @@ def _inverse_record(robot: Robot) -> dict[str, Any] | None:
 
     if not robot.n:
         return None
+    if isinstance(robot, CoupledRobot):
+        from robokin.inverse.coupled_joints import about_inverse
+
+        method, reason, complete = about_inverse(robot)
+        return {"method": method, "reason": reason, "complete": complete}
     analysis = analysis_of(robot)
     return {"method": analysis.method, "reason": analysis.sentence, "complete": analysis.complete}
 
@@ -194,14 +224,21 @@ def links_record(tree: Tree, units: Units) -> dict[str, Any]:
     variables = {number: place for place, number in enumerate(graph.variables, start=1)}
     coupled = {coupling.joint: coupling for coupling in graph.couplings}
 
+    turns = {joint.name: joint.turns for joint in graph.joints}
+
+    def factor(name: str) -> float:
+        return units.radians if turns[name] else units.metres
+
     def hangs(name: str) -> list[dict[str, Any]]:
         ratios = coupled[name].ratios if name in coupled else ()
-        return [{"joint": other, "ratio": ratio} for other, ratio in ratios]
+        return [
+            {"joint": other, "ratio": ratio if turns[name] == turns[other] else ratio * factor(other) / factor(name)}
+            for other, ratio in ratios
+        ]
 
     joints: list[dict[str, Any]] = []
     for number in graph.moving:
         joint = graph.joints[number]
-        factor = units.metres if joint.type == "prismatic" else units.radians
         limits = None if np.isinf(joint.limits).all() else joint.limits
         joints.append(
             {
@@ -211,7 +248,7 @@ def links_record(tree: Tree, units: Units) -> dict[str, Any]:
                 "variable": f"q{variables[number]}" if number in variables else None,
                 "parent": graph.links[joint.parent],
                 "child": graph.links[joint.child],
-                "limits": None if limits is None else in_units(np.array(limits), factor).tolist(),
+                "limits": None if limits is None else in_units(np.array(limits), factor(joint.name)).tolist(),
                 "follows": hangs(joint.name),
             }
         )

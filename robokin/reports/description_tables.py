@@ -54,8 +54,11 @@ def robot_table(record: dict[str, Any]) -> bytes:
     ]
     if record["inverse"]:
         inverse = record["inverse"]
-        whole = "every solution" if inverse["complete"] else "some of infinitely many solutions"
+        some = "some of infinitely many solutions" if record["redundancy"] else "solutions, perhaps not all"
+        whole = "every solution" if inverse["complete"] else some
         entries.append(("inverse", f"{inverse['method']}: {inverse['reason']}; {whole}"))
+    for coupling in record.get("couplings", ()):
+        entries.append(("coupled", _coupling_text(coupling)))
     if record["parameters"]:
         listed = ", ".join(f"{name} = {show(value)}" for name, value in record["parameters"].items())
         entries.append(("parameters", listed))
@@ -72,6 +75,14 @@ def robot_table(record: dict[str, Any]) -> bytes:
     entries += [("source", record["source"])] if record["source"] else []
     rest = f"{record['convention']} convention, lengths in {units['length']}, angles in {units['angle']}"
     return render(heading(record["name"], rest), "", drawn, "", pairs(entries))
+
+
+def _coupling_text(coupling: dict[str, Any]) -> str:
+    """`J3 adds -1 J2`, `dip follows 0.6667 pip + 5`."""
+    others = " + ".join(f"{show(other['ratio'])} {other['joint']}" for other in coupling["ratios"])
+    offset = coupling["offset"]
+    shift = f" {'+' if offset > 0 else '-'} {show(abs(offset))}" if offset else ""
+    return f"{coupling['joint']} {'adds' if coupling['own'] else 'follows'} {others}{shift}"
 
 
 def tree_table(record: dict[str, Any]) -> bytes:
@@ -118,13 +129,13 @@ def variable_cell(row: dict[str, Any], name: str, angle: str) -> str:
 
 
 def _shifted(row: dict[str, Any]) -> str:
-    """A row's variable with its sense and its offset."""
-    offset = row["offset"]
+    """A row's variable, or that it has none of its own, with its sense and its offset."""
+    offset, variable = row["offset"], row["variable"] or row["name"]
     if row["sense"] == -1:
-        return f"{show(offset)} - {row['variable']}" if offset else f"-{row['variable']}"
+        return f"{show(offset)} - {variable}" if offset else f"-{variable}"
     if not offset:
-        return str(row["variable"])
-    return f"{row['variable']} {'+' if offset > 0 else '-'} {show(abs(offset))}"
+        return str(variable)
+    return f"{variable} {'+' if offset > 0 else '-'} {show(abs(offset))}"
 
 
 def transform_in_short(matrix: list[list[float]], angle: str) -> str:

@@ -14,7 +14,7 @@ from robokin.inverse.analysis import Analysis, Task, analysis_of
 from robokin.inverse.full_turns import MOST_TURNS, unlimited
 from robokin.inverse.hold import HeldArm, held_arm
 from robokin.inverse.solutions import Result, Solution
-from robokin.model import Robot
+from robokin.model import CoupledRobot, Robot
 from robokin.model.joint_units import joint_factors
 from robokin.number_text import show
 from robokin.records.self_motion_records import is_within
@@ -111,6 +111,10 @@ class AnswerTable:
     @property
     def idle(self) -> list[int]:
         """The joints, from 1, that only move what the task leaves open."""
+        if isinstance(self.robot, CoupledRobot):
+            moved = self.robot.drive.S != 0.0
+            still = [i for i in range(len(moved)) if i not in self.analysis.idle]
+            return [i + 1 for i in range(self.robot.n) if not moved[still, i].any()]
         idle = tuple(i + 1 for i in self.analysis.idle)
         return list(self.arm.numbers(idle) if self.held else idle)
 
@@ -123,7 +127,8 @@ class AnswerTable:
     @cached_property
     def analysis(self) -> Analysis:
         """How the arm is solved for the task."""
-        return analysis_of(self.arm.part if self.held else self.robot, cast("Task", self.task))
+        arm = self.arm.part if self.held else self.robot
+        return analysis_of(arm.free_motion if isinstance(arm, CoupledRobot) else arm, cast("Task", self.task))
 
     def motions(self, result: Result, free: Sequence[tuple[int, ...]]) -> Iterator[str]:
         """The self-motions in words, given the joints of each solution that are free to move."""

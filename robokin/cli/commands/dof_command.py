@@ -138,13 +138,16 @@ def _described(
     name: str, kind: str, motion: dict[str, Any], seed: int, description: DescriptionOptions, mode: int | None
 ) -> dict[str, Any] | bytes:  # fmt: skip
     """The document about what a description describes, or the bytes of its motion."""
-    from robokin.model import Mechanism, Robot, Tree
+    from robokin.formats.part import tree_of
+    from robokin.model import CoupledRobot, Mechanism, Robot, Tree
 
     entry = description.anything(name, mode)
     units = description.over(entry.units)
     if isinstance(entry, Mechanism):
         return _mechanism(entry, units, kind, motion, seed)
     _refuse(motion, "is for mechanisms", "one of those")
+    if isinstance(entry, CoupledRobot):
+        entry = tree_of(entry)
     if isinstance(entry, Tree):
         from robokin.records.freedom_records import tree_record
 

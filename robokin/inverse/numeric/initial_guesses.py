@@ -74,8 +74,8 @@ def guesses(chain: Chain, limits: Array, size: float, seed: int) -> Guesses:
     ends = np.where(np.isinf(limits), reach[:, None] * [-1.0, 1.0], limits)
     bounded = np.isfinite(limits)
     scale = np.where(chain.revolute, 1.0, size)
-    inside = between(chain, ends, size, rng.random((DRAWN, chain.n)))
-    faces = between(chain, ends, size, rng.random((DRAWN, chain.n)))
+    inside = between(chain.revolute, ends, size, rng.random((DRAWN, chain.n)))
+    faces = between(chain.revolute, ends, size, rng.random((DRAWN, chain.n)))
     side = rng.integers(0, 2, (DRAWN, chain.n))
     at_limit = (rng.random((DRAWN, chain.n)) < 0.5) & bounded[np.arange(chain.n), side]
     faces = np.where(at_limit, ends[np.arange(chain.n), side], faces)
@@ -83,14 +83,15 @@ def guesses(chain: Chain, limits: Array, size: float, seed: int) -> Guesses:
     return Guesses(q, pose(chain, q))
 
 
-def between(chain: Chain, ends: Array, size: float, u: Array) -> Array:
+def between(turns: Flags, ends: Array, size: float, u: Array) -> Array:
     """Configurations (k, n) [rad | m] at parts u (k, n) of the way between ends (n, 2).
 
-    A slide whose way is LONG against the arm has values of every order of magnitude.
+    turns: (n,) whether each joint turns. A slide whose way is LONG against the arm has values of every order of
+    magnitude.
     """
     low, high = ends.T
     q: Array = low + (high - low) * u
-    for i in np.flatnonzero(~chain.revolute & (high - low > LONG * size)):
+    for i in np.flatnonzero(~turns & (high - low > LONG * size)):
         home = np.clip(0.0, low[i], high[i])
         first, last = np.arcsinh((low[i] - home) / size), np.arcsinh((high[i] - home) / size)
         q[:, i] = np.clip(home + size * np.sinh(first + (last - first) * u[:, i]), low[i], high[i])

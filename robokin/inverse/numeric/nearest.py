@@ -34,7 +34,7 @@ def starts(chain: Chain, limits: Array, size: float, count: int, seed: int) -> A
     """Random configurations (count, n) within the limits, or a turn and two arm's sizes where there are none."""
     reach = np.where(chain.revolute, np.pi, size)
     ends = np.where(np.isinf(limits), reach[:, None] * [-1.0, 1.0], limits)
-    return between(chain, ends, size, np.random.default_rng(seed).random((count, chain.n)))
+    return between(chain.revolute, ends, size, np.random.default_rng(seed).random((count, chain.n)))
 
 
 def numeric_solutions(
