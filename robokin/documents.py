@@ -234,9 +234,12 @@ def frame(expression: str, units: Units | None = None) -> Document:
 
 
 def plot(
-    what: Robot | Mechanism | Result, q: ArrayLike | None = None, frames: bool = False, units: Units | None = None
+    what: Robot | Tree | Mechanism | Result,
+    q: ArrayLike | None = None,
+    frames: bool = False,
+    units: Units | None = None,
 ) -> Document:
-    """What `robokin plot` says of a robot at q: (n,) or (m, n) [rad | m], of solutions, or of a mechanism.
+    """What `robokin plot` says of a robot or a tree at q: (n,) or (m, n) [rad | m], of solutions, or of a mechanism.
 
     Raises InputError.
     """

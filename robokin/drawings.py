@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from robokin.errors import InputError
 from robokin.expected import described, expect_choice, expect_finite, expect_flag, expect_kind
 from robokin.inverse.solutions import Result
-from robokin.model import Mechanism, Robot, expect_robot
+from robokin.model import Mechanism, Robot, Tree, expect_robot
 from robokin.units import Units
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class Drawing:
 
 
 def draw(
-    what: Robot | Mechanism | Result,
+    what: Robot | Tree | Mechanism | Result,
     q: ArrayLike | None = None,
     kind: str = "svg",
     *,
@@ -74,11 +74,11 @@ def draw(
     view: tuple[float, float] | None = None,
     units: Units | None = None,
 ) -> Drawing:
-    """A picture of a robot, of all solutions that `solve_ik` found, or of a mechanism.
+    """A picture of a robot or a tree, of all solutions that `solve_ik` found, or of a mechanism.
 
-    q: (n,) or (m, n) [rad | m] the configurations of a robot, of which all but the first are pale; by default its
-    pose `home`, else zeros. kind: svg, png, pdf (which need matplotlib), html (a page that turns) or text. `frames`
-    draws a frame after each row of the table; view: azimuth and elevation [°] of the eye. Raises InputError.
+    q: (n,) or (m, n) [rad | m] the configurations of a robot or a tree, of which all but the first are pale; by
+    default its pose `home`, else zeros. kind: svg, png, pdf (which need matplotlib), html (a page that turns) or text.
+    `frames` draws a frame after each row of the table; view: azimuth and elevation [°] of the eye. Raises InputError.
     """
     expect_choice(kind, KINDS, "kind")
     eye = None if view is None else _view(view)
@@ -109,22 +109,23 @@ def _view(view: Sequence[float]) -> tuple[float, float]:
 
 
 def scene_with(
-    what: Robot | Result,
+    what: Robot | Tree | Result,
     q: ArrayLike | None,
     frames: bool,
     view: tuple[float, float] | None,
     units: Units | None,
 ) -> tuple[Scene, AskedPostures]:
-    """The picture of a robot at configurations, or with the solutions of a target, and what was asked for."""
+    """The picture of a robot or a tree at configurations, or with the solutions of a target, and what was asked for."""
     from robokin.pictures.arm import default_configuration
     from robokin.pictures.drawn_arm import AskedPostures, given_postures, scene_of, solved_postures
 
+    robot: Robot | Tree
     if isinstance(what, Result):
         if what.question is None:
             raise InputError("what: this result does not know its robot, expected one of robokin.solve_ik")
         robot = what.question.robot
     else:
-        robot = expect_robot(what, "what")
+        robot = what if isinstance(what, Tree) else expect_robot(what, "what")
     own, name = units or robot.units, ""
     given = [] if q is None else [*_rows(robot, q)]
     if isinstance(what, Result):
@@ -140,7 +141,7 @@ def scene_with(
     return scene_of(robot, own, wanted, name, view, frames), wanted
 
 
-def _rows(robot: Robot, q: ArrayLike) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+def _rows(robot: Robot | Tree, q: ArrayLike) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
     values = expect_finite(q, "q", f"(n,) or (m, n) finite joint values, n = {robot.n}")
     if values.ndim not in (1, 2) or values.shape[-1] != robot.n or not values.size:
         raise InputError(f"q: found {described(values)}, expected (n,) or (m, n), n = {robot.n}")

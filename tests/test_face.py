@@ -25,6 +25,7 @@ from robokin import InputError, RobokinError, Units
 
 PUMA = robokin.load("puma560")
 PLANAR = robokin.load("planar2r")
+HAND = robokin.load_tree("human-hand")
 FOUR_BAR = robokin.load_mechanism("four-bar")
 HAND = robokin.load_tree("human-hand")
 CAR = robokin.load_wheeled("car")
@@ -218,6 +219,7 @@ DOCUMENTS = {
         ["plot", "puma560", "--ik", "Trans(500,100,300) RPY(180,0,45)"],
         lambda: robokin.documents.plot(robokin.solve_ik(PUMA, TARGET)),
     ),
+    "plot of a tree": (["plot", "human-hand", "--frames"], lambda: robokin.documents.plot(HAND, frames=True)),
     "plot of a mechanism": (["plot", "bennett"], lambda: robokin.documents.plot(robokin.load_mechanism("bennett"))),
     "schema": (["schema", "fk"], lambda: robokin.documents.schema("fk")),
 }

@@ -26,7 +26,7 @@ COMMANDS = {
     "jacobian": "The Jacobian: how freely the tool moves at a configuration.",
     "singular": "Where an arm loses a freedom: shoulder, elbow, wrist.",
     "path": "A path between two configurations, or along a straight line.",
-    "plot": "A picture of an arm or a mechanism, still or turning.",
+    "plot": "A picture of an arm, a hand or a mechanism, still or turning.",
     "workspace": "What an arm can reach, and how freely the tool can turn.",
     "dof": "Degrees of freedom: Grübler's count and the mobility.",
     "check": "Mark answers: poses, joint values, tables, counts.",

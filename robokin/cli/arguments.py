@@ -31,14 +31,14 @@ def load_entry(
 
 def load_robot(name: str, overrides: dict[str, str], part: Part | None = None) -> Robot:
     """The robot that a command works on. Raises InputError, also for a mechanism or a wheeled base."""
-    robot = _jointed(name, load_entry(name, overrides, None, part))
+    robot = expect_jointed(name, load_entry(name, overrides, None, part))
     assert isinstance(robot, Robot)
     return robot
 
 
 def load_jointed(name: str, overrides: dict[str, str], part: Part | None = None) -> Robot | Tree:
     """The robot that a command works on, or the tree of which no chain is named. Raises InputError."""
-    return _jointed(name, load_noted(name, overrides, None, part))
+    return expect_jointed(name, load_noted(name, overrides, None, part))
 
 
 def load_noted(
@@ -52,7 +52,8 @@ def load_noted(
     return loaded
 
 
-def _jointed(name: str, loaded: Robot | Mechanism | WheeledBase | Tree) -> Robot | Tree:
+def expect_jointed(name: str, loaded: Robot | Mechanism | WheeledBase | Tree) -> Robot | Tree:
+    """What was loaded by a name, if it is a robot or a tree. Raises InputError."""
     if isinstance(loaded, WheeledBase):
         raise InputError(f"{name} is a wheeled base, expected a robot")
     if isinstance(loaded, Mechanism):

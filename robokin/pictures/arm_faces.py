@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.pictures.arm import SQUARE, ArmShape, Bar, ends_of, perpendicular
+from robokin.pictures.arm import LINK, SQUARE, ArmShape, Bar, ends_of, perpendicular
 
 COLOURS = {
     "link": "#a9bac9", "slide": "#e5b48f", "revolute": "#2b628f", "prismatic": "#c8551b", "stroke": "#b98a6a",
-    "base": "#6d757d", "x": "#cf2f2f", "y": "#2a8f3c", "z": "#2f55cf",
+    "base": "#6d757d", "palm": "#d3dde6", "x": "#cf2f2f", "y": "#2a8f3c", "z": "#2f55cf",
 }  # fmt: skip
 """Colours of the pieces and of a frame's axes."""
 
@@ -36,6 +36,15 @@ PIECE = 2.0
 
 PARTS = 24
 """Parts of a piece at most."""
+
+PALE_PALM = 0.8
+"""How pale the plate of a ghost is."""
+
+BEHIND = 3.5
+"""Radii of its links that a plate is taken to be behind them: as far as their pieces may reach."""
+
+MOST_PIECES = 10
+"""Pieces along a plate's longest spoke at most."""
 
 SAME = 1e-3
 """Pieces of two arms whose ends are nearer than this part of the arm's length are one piece to the eye."""
@@ -83,6 +92,34 @@ def arm_faces(
             yield from faces
         else:
             yield from (face for face in faces if not _inside(face.corners.mean(axis=0), joints))
+    for palm in arm.palms:
+        corners = palm.corners @ frames[palm.body, :3, :3].T + frames[palm.body, :3, 3]
+        key = ("palm", *np.round(corners.ravel() / (SAME * arm.length)).astype(int).tolist())
+        if ghost is None or drawn is None or key not in drawn:
+            paint = colour(COLOURS["palm"]) if ghost is None else colour(ghost, PALE_PALM)
+            yield from _palm_faces(corners, eye, paint, LINK * arm.length)
+        if drawn is not None:
+            drawn.add(key)
+
+
+def _palm_faces(corners: Array, eye: Array, paint: Array, width: float) -> Iterator[Face]:
+    """A plate (k, 3) [m] in small triangles, behind the links of that radius [m] that lie in it."""
+    # Farther from an eye that is infinitely far away nothing changes its place.
+    corners = corners - BEHIND * width * eye[2]
+    middle = corners.mean(axis=0)
+    normal = np.sum(np.cross(np.roll(corners, 1, axis=0) - middle, corners - middle), axis=0)
+    normal = normal / np.linalg.norm(normal)
+    shade = _shaded(paint, eye @ (normal if normal @ eye[2] > 0.0 else -normal))
+    spokes = np.linalg.norm(corners - middle, axis=1)
+    count = min(max(int(np.ceil(np.max(spokes) / (PIECE * width))), 1), MOST_PIECES)
+    for a, b in zip(np.roll(corners, 1, axis=0), corners, strict=True):
+        u, v = (a - middle) / count, (b - middle) / count
+        for i in range(count):
+            for j in range(count - i):
+                p = middle + i * u + j * v
+                yield Face(np.array([p, p + u, p + v]), shade)
+                if i + j < count - 1:
+                    yield Face(np.array([p + u, p + u + v, p + v]), shade)
 
 
 def _inside(point: Array, joints: Sequence[tuple[Bar, Array, Array]]) -> bool:

@@ -1,7 +1,8 @@
 """A page in one file that needs no network: the arm turns with the mouse and moves with a slider for each joint.
 
-The page computes forward kinematics itself, from the chain's constants; `window.robokin.fk(q)` is that function: joint
-values in the page's units in, a 4×4 matrix with its origin in the page's length unit out.
+The page computes forward kinematics itself, from the constants of the bodies; `window.robokin.fk(q)` is that function:
+joint values in the page's units in, a 4×4 matrix with its origin in the page's length unit out; `tips(q)` gives those
+of all tips by name.
 """
 
 from __future__ import annotations
@@ -11,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.kernel.chain import chain_of
-from robokin.pictures.arm import Bar, default_configuration
+from robokin.pictures.arm import LINK, Bar, default_configuration
 from robokin.pictures.arm_faces import COLOURS, CROSS, GHOSTS
 from robokin.pictures.arm_scene import Posture, Scene
+from robokin.pictures.skeleton import branches_of, leads_of
 from robokin.pictures.workspace_page import filled
 
 DIGITS = 5
@@ -25,7 +26,7 @@ def arm_page(scene: Scene) -> bytes:
     """The scene as an .html file."""
     robot, units = scene.arm.robot, scene.units
     scale = 1.0 / units.metres
-    chain = chain_of(robot)
+    skeleton = scene.arm.skeleton
     low, high = scene.bounds()
     home, home_name = default_configuration(robot)
     poses = {home_name or "default": home} | dict(robot.poses)
@@ -36,25 +37,42 @@ def arm_page(scene: Scene) -> bytes:
         "angle": units.angle,
         "radians": units.radians,
         # What forward kinematics needs, in all its digits; the rest is for the eye.
-        "constants": [_scaled(C, scale) for C in chain.constants],
+        "bodies": [_body(scene, i, scale) for i in range(len(skeleton.bodies))],
+        "tips": [[tip.name, tip.body, _scaled(tip.T, scale)] for tip in skeleton.tips],
         "joints": [_joint(scene, i) for i in range(robot.n)],
+        "groups": [list(group) for group in branches_of(robot)],
         "q": _values(scene, scene.postures[0].q),
         "poses": {name: _values(scene, q) for name, q in poses.items()},
         "ghosts": [_ghost(scene, posture) for posture in scene.postures],
         "target": None if scene.target is None else _scaled(scene.target, scale),
         "turned": scene.turned,
         "note": scene.note,
-        "frames": [[mark.name, mark.body, _scaled(mark.T, scale)] for mark in scene.arm.marks],
+        "frames": [
+            [mark.name, mark.body, _scaled(mark.T, scale), mark.end, scene.arm.axes(mark.body)]
+            for mark in scene.arm.marks
+        ],
         "shown": scene.frames,
         "bars": [_bar(bar, scale) for bar in scene.arm.bars],
-        "lines": [_short(line * scale) for line in scene.arm.lines],
+        "palms": [[palm.body, _short(palm.corners * scale)] for palm in scene.arm.palms],
+        "width": scene.arm.length * LINK * scale,
         "size": scene.arm.length * scale,
+        "forked": scene.arm.forked,
         "box": _short(np.array([low, high]) * scale),
         "view": list(scene.view),
         "colours": COLOURS | {"cross": CROSS},
         "palette": list(GHOSTS),
     }
     return filled("arm.html", scene.title, data)
+
+
+def _body(scene: Scene, i: int, scale: float) -> list[Any]:
+    """A body as the page moves it: the one before it, the joint's start there, how far it turns [rad] and slides
+    [length] for each unit of its value, and the value as a sum: [joint, factor] of each joint's, and a constant."""
+    skeleton, factors = scene.arm.skeleton, _factors(scene)
+    body, row = skeleton.bodies[i], skeleton.S[i]
+    turn, slide = body.rates
+    parts = [[int(j), float(row[j] * factors[j])] for j in np.flatnonzero(row)]
+    return [body.parent, _scaled(body.start, scale), turn, slide * scale, parts, float(skeleton.o[i]) + 0.0]
 
 
 def _scaled(T: Array, scale: float) -> list[float]:
@@ -77,16 +95,16 @@ def _factors(scene: Scene) -> Array:
 def _joint(scene: Scene, i: int) -> dict[str, Any]:
     """A joint as its slider needs it; `free` tells which ends are none of the description's."""
     robot, factor = scene.arm.robot, float(_factors(scene)[i])
-    joint = robot.joints[i]
+    joint, limits = robot.joints[i], robot.limits[i]
     # Without limits a joint turns once round, and slides by the arm's length.
     reach = np.pi if robot.revolute[i] else scene.arm.length
-    ends = [sign * reach if np.isinf(end) else end for sign, end in zip((-1.0, 1.0), joint.limits, strict=True)]
+    ends = [sign * reach if np.isinf(end) else end for sign, end in zip((-1.0, 1.0), limits, strict=True)]
     return {
         "name": joint.name,
-        "type": joint.type.letter,
-        "offset": joint.sense * joint.offset / (1.0 if robot.revolute[i] else factor) + 0.0,
+        "type": "R" if robot.revolute[i] else "P",
+        "leads": leads_of(robot, i),
         "limits": [float(f"{end / factor:.12g}") for end in ends],
-        "free": [bool(np.isinf(end)) for end in joint.limits],
+        "free": [bool(np.isinf(end)) for end in limits],
     }
 
 

@@ -8,12 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.model import Robot
-from robokin.pictures.arm import ArmShape, FrameMark, body_frames, ends_of, plane_of
+from robokin.model import Robot, Tree
+from robokin.pictures.arm import ArmShape, arm_of, body_frames, default_configuration, ends_of, lines_of, plane_of
+from robokin.pictures.skeleton import FrameMark
 from robokin.units import Units
 
 SLANTING = (-58.0, 22.0)
 """Azimuth and elevation [°] of the eye that a solid arm is seen from: x to the right, y away."""
+
+LYING, STANDING = (-62.0, 52.0), (28.0, 16.0)
+"""The same for several branches that lie beside one another, as a hand's fingers, and for a body seen from the front,
+x pointing to the eye."""
+
+THIN = 0.4
+"""Branches lie or stand beside one another where they are thinner than this part of their extent."""
 
 PLANES = {0: (0.0, 0.0), 1: (-90.0, 0.0), 2: (-90.0, 90.0)}
 """Azimuth and elevation [°] of the eye that sees the plane across an axis x, y, z of the world upright."""
@@ -36,10 +44,10 @@ class Posture:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A picture of an arm.
+    """A picture of an arm, or of a tree.
 
     target (4, 4) [m]: the pose that was asked for, `turned` whether its orientation was; frames: whether all are
-    drawn, or base and tool alone; view: azimuth and elevation [°] of the eye, `flat` whether axes are drawn as in the
+    drawn, or base and tips alone; view: azimuth and elevation [°] of the eye, `flat` whether axes are drawn as in the
     plane; name: what a shell calls the robot; note: what the user should know.
     """
 
@@ -67,8 +75,9 @@ class Scene:
                 points += [ends - bar.width, ends + bar.width]
             if not posture.ghost:
                 # The axes of the frames reach beyond what they stand on.
-                poses = [frames[mark.body] @ mark.T for mark in self.marks()]
-                points += [T[:3, 3] + room * np.vstack([np.zeros(3), T[:3, :3].T]) for T in poses]
+                for mark in self.marks():
+                    T, reach = frames[mark.body] @ mark.T, room * self.arm.axes(mark.body)
+                    points.append(T[:3, 3] + reach * np.vstack([np.zeros(3), T[:3, :3].T]))
         if self.target is not None:
             points.append(self.target[:3, 3] + room * np.vstack([np.zeros(3), self.target[:3, :3].T]))
         low, high = np.min(np.concatenate(points), axis=0), np.max(np.concatenate(points), axis=0)
@@ -77,16 +86,23 @@ class Scene:
 
     def marks(self) -> list[FrameMark]:
         """The frames that are drawn."""
-        return [mark for mark in self.arm.marks if self.frames or mark.name in ("base", "tool")]
+        return [mark for mark in self.arm.marks if self.frames or mark.end]
 
 
-def usual_view(robot: Robot) -> tuple[tuple[float, float], bool]:
+def usual_view(robot: Robot | Tree) -> tuple[tuple[float, float], bool]:
     """From where an arm is seen when nobody says, and whether that is straight onto its plane."""
     normal = plane_of(robot)
     if normal is not None:
         axis = int(np.argmax(np.abs(normal)))
         if np.max(np.abs(np.delete(normal, axis))) < ALONG:
             return PLANES[axis], True
+    arm = arm_of(robot)
+    if arm.forked:
+        frames = body_frames(robot, default_configuration(robot)[0])
+        extent = np.ptp(np.concatenate(lines_of(arm, frames)), axis=0)
+        thinnest = int(np.argmin(extent))
+        if extent[thinnest] < THIN * np.max(extent):
+            return (STANDING, SLANTING, LYING)[thinnest], False
     return SLANTING, False
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.pictures.arm import body_frames, line_of
+from robokin.pictures.arm import body_frames, lines_of
 from robokin.pictures.arm_faces import GHOSTS, Face, arm_faces, colour, cross_faces, frame_faces, ordered
 from robokin.pictures.arm_scene import Scene, axis_names, eye_axes
 from robokin.pictures.workspace_stills import drawing, written
@@ -111,7 +111,7 @@ def _faces(scene: Scene, eye: Array) -> tuple[list[Face], list[Face]]:
             continue
         faces += arm_faces(scene.arm, frames, eye, None, drawn)
         for mark in scene.marks():
-            axes += frame_faces(frames[mark.body] @ mark.T, length, eye)
+            axes += frame_faces(frames[mark.body] @ mark.T, length * scene.arm.axes(mark.body), eye)
     if scene.target is not None:
         p = scene.target[:3, 3]
         axes += frame_faces(scene.target, 1.25 * length, eye) if scene.turned else cross_faces(p, length, eye)
@@ -203,9 +203,12 @@ def _numbers(scene: Scene) -> list[tuple[Array, str, str]]:
     named = [(i, posture) for i, posture in enumerate(scene.postures) if posture.label]
     if len(named) < 2:
         return []
-    lines = [line_of(scene.arm, body_frames(scene.arm.robot, posture.q)) for _, posture in named]
-    count = min(map(len, lines))
-    places = np.array([0.5 * (line[: count - 1] + line[1:count]) for line in lines])
+    middles = []
+    for _, posture in named:
+        lines = lines_of(scene.arm, body_frames(scene.arm.robot, posture.q))
+        middles.append(np.concatenate([0.5 * (line[:-1] + line[1:]) for line in lines]))
+    count = min(map(len, middles))
+    places = np.array([middle[:count] for middle in middles])
     marks = []
     for k, (number, _) in enumerate(named):
         apart = np.linalg.norm(places - places[k], axis=2) / scene.arm.length

@@ -1,4 +1,4 @@
-"""Which postures of an arm a picture has: configurations that are given, and the solutions of a target."""
+"""Which postures of an arm or a tree a picture has: configurations that are given, and the solutions of a target."""
 
 from __future__ import annotations
 
@@ -12,15 +12,20 @@ from robokin.errors import InputError
 from robokin.inverse.solutions import Question, Result
 from robokin.inverse.solve import solve_many
 from robokin.kinematics.forward import joint_frames
-from robokin.model import Robot
+from robokin.kinematics.tips import tip_poses
+from robokin.model import Robot, Tree
 from robokin.model.joint_units import in_units, joint_factors
 from robokin.pictures.arm import arm_of
 from robokin.pictures.arm_scene import Posture, Scene, usual_view
+from robokin.pictures.skeleton import skeleton_of
 from robokin.units import Units
 
 MOST_GHOSTS = 16
 """Solutions that are drawn at most: as many as an arm of six turning joints can have; those of a redundant arm never
 end."""
+
+MOST_VALUES = 8
+"""Joint values that stand in and beside a tree's picture at most."""
 
 FARTHEST = 1e6
 """Metres that a place is away at most: beyond, nothing is left of an arm in a picture."""
@@ -41,11 +46,25 @@ class AskedPostures:
         return self.result is not None and not self.result.reachable
 
 
-def given_postures(robot: Robot, units: Units, given: Sequence[Array]) -> tuple[Posture, ...]:
+def given_postures(robot: Robot | Tree, units: Units, given: Sequence[Array]) -> tuple[Posture, ...]:
     """Configurations (n,) [rad | m] to draw: the first solid, all others pale."""
     # A single arm needs no name beside it: its joint values stand below the title.
-    labels = [values_text(q, robot, units) if len(given) > 1 else "" for q in given]
+    labels = [""] * len(given)
+    if len(given) > 1:
+        labels = [_posture_name(robot, units, q, number) for number, q in enumerate(given, start=1)]
     return tuple(Posture(q, label, k > 0) for k, (q, label) in enumerate(zip(given, labels, strict=True)))
+
+
+def _posture_name(robot: Robot | Tree, units: Units, q: Array, number: int) -> str:
+    """What a configuration is called: its values, of a tree the pose that it is, or its number where it has many."""
+    if isinstance(robot, Robot):
+        return values_text(q, robot, units)
+    return _pose_at(robot, q) or (values_text(q, robot, units) if robot.n <= MOST_VALUES else f"configuration {number}")
+
+
+def _pose_at(tree: Tree, q: Array) -> str:
+    """The name of the pose that a configuration is; "" where it is none."""
+    return next((name for name, values in tree.poses.items() if np.array_equal(values, q)), "")
 
 
 def solved_postures(
@@ -77,7 +96,7 @@ def solved_postures(
 
 
 def scene_of(
-    robot: Robot, units: Units, wanted: AskedPostures, name: str, view: tuple[float, float] | None, frames: bool,
+    robot: Robot | Tree, units: Units, wanted: AskedPostures, name: str, view: tuple[float, float] | None, frames: bool,
     option: str = "q",
 ) -> Scene:  # fmt: skip
     """The picture of all that is asked for; `name` is what the first configuration is called.
@@ -85,12 +104,16 @@ def scene_of(
     Raises InputError, which names the option, for an arm that is too long for a picture.
     """
     for posture in wanted.postures:
-        if not np.max(np.abs(joint_frames(robot, posture.q)[:, :3, 3])) < FARTHEST:
+        if not np.max(np.abs(_places(robot, posture.q))) < FARTHEST:
             raise InputError(f"{option}: the arm is too long for a picture, expected smaller values")
     usual, flat = usual_view(robot)
     solid, asked = wanted.postures[0], wanted.question
     text = values_text(solid.q, robot, units)
     subtitle = f"q = {name} = {text}" if name else f"q = {text}"
+    if not isinstance(robot, Robot):
+        name = name or _pose_at(robot, solid.q)
+        if name or robot.n > MOST_VALUES or (robot.n and not solid.q.any()):
+            subtitle = f"q = {name}" if name else f"{robot.n} joints" + ("" if solid.q.any() else " at 0")
     if wanted.result is not None and solid.label and not wanted.unreachable:
         subtitle += f"  (solution 1 of {len(wanted.result.solutions)})"
     return Scene(
@@ -111,7 +134,14 @@ def arm_picture(scene: Scene, kind: str) -> bytes:
     return arm_still(scene, kind)
 
 
-def values_text(q: Array, robot: Robot, units: Units) -> str:
+def _places(robot: Robot | Tree, q: Array) -> Array:
+    """(k, 3) [m] where the joints and the tips are."""
+    if isinstance(robot, Robot):
+        return joint_frames(robot, q)[:, :3, 3]
+    return np.concatenate([skeleton_of(robot).frames(q), tip_poses(robot, q)])[:, :3, 3]
+
+
+def values_text(q: Array, robot: Robot | Tree, units: Units) -> str:
     """Joint values (n,) [rad | m] in the units, each with its own where they differ."""
     values = in_units(q, joint_factors(robot, units))
     angle = "°" if units.degrees else " rad"

@@ -15,8 +15,8 @@ function stage() {
   eye = [[-sa, ca, 0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]];
   const scale = 0.46 * Math.min(w, h) / radius * zoom;
   const place = (p) => { const o = minus(p, centre); return [w / 2 + shift[0] + dot(o, eye[0]) * scale, h / 2 + shift[1] - dot(o, eye[1]) * scale]; };
-  // The floor: a grid of round steps below the arm.
-  const step = roundStep(size / 8), floor = Math.min(0, data.box[0][2] < -0.3 * size ? 0 : data.box[0][2]);
+  // The floor: a grid of round steps below the arm, where it does not hang far down; a tree stands on it.
+  const step = roundStep(size / 8), floor = Math.min(0, data.box[0][2] < -0.3 * size && !data.forked ? 0 : data.box[0][2]);
   const lines = [0, 1].map((k) => [Math.floor(Math.min(data.box[0][k], -0.2 * size) / step), Math.ceil(Math.max(data.box[1][k], 0.2 * size) / step)]);
   ctx.lineWidth = 1; ctx.strokeStyle = css("--grid"); ctx.beginPath();
   for (const k of [0, 1]) for (let i = lines[k][0]; i <= lines[k][1]; i++) for (const end of [0, 1]) {

@@ -140,6 +140,32 @@ JOINT = record(
         "axis": numbers("Its axis, a unit vector in the world [1].", 3),
     },
 )
+TREE_JOINT = record(
+    "A joint of a tree in the picture.",
+    {
+        "name": text("Its name."),
+        "type": word("What it does.", "revolute", "prismatic", "helical"),
+        "position": PLACE,
+        "axis": numbers("Its axis, a unit vector in the world [1].", 3),
+    },
+)
+LINE = rows("Corners of a line [length].", None, 3)
+
+
+def _trees() -> tuple[Schema, Schema]:
+    """The trees of a picture, and one in a line."""
+    tree = {
+        "label": text("What the picture calls it."),
+        "ghost": flag("Whether it is drawn pale."),
+        "q": Q,
+        "within_limits": flag("Whether all joints are within limits."),
+        "lines": items(LINE, "Lines of links, from the root or a fork to the end of a branch."),
+        "joints": items(TREE_JOINT, "The joints that move, those that follow others too."),
+        "tips": mapping(POSE, "The pose of each tip, by its name."),
+    }
+    several = items(record("A tree.", tree, {"frames": FRAMES}), "The trees, the solid one first.")
+    line = record("A tree.", {**head("robot", ROBOT), **tree}, {"frames": FRAMES})
+    return record("Trees.", {**head("robot", ROBOT), "trees": several}), line
 
 
 def plot() -> Schema:
@@ -184,6 +210,9 @@ def plot() -> Schema:
     }
     arm_line = record("An arm.", {**head("robot", ROBOT), **arm}, {"frames": FRAMES})
     link_line = record("A link.", {**head("mechanism", text("The mechanism, as `id`.")), **link})
-    about = "What a picture shows; a line of JSON lines holds one arm or one link."
+    trees, tree_line = _trees()
+    about = "What a picture shows; a line of JSON lines holds one arm, one tree or one link."
     drawn = record("A mechanism.", mechanism)
-    return documents("plot", about, [], arms=arms, mechanism=drawn, arm=arm_line, link=link_line)
+    return documents(
+        "plot", about, [], arms=arms, trees=trees, mechanism=drawn, arm=arm_line, tree=tree_line, link=link_line
+    )

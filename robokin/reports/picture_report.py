@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from robokin.kinematics.forward import forward_kinematics
+from robokin.kinematics.tips import tip_poses
 from robokin.number_text import show
 from robokin.pictures.arm_scene import Scene
 from robokin.pictures.drawn_arm import AskedPostures
@@ -14,13 +15,25 @@ from robokin.records.picture_records import arms_record, drawn_record
 from robokin.records.pose_records import poses_in
 from robokin.tables.written_rows import csv_records, written
 
+MOST_TIPS = 12
+"""Tips of a tree whose places stand below its picture."""
+
 
 def arms_written(kind: str, scene: Scene, wanted: AskedPostures) -> Iterator[bytes]:
     """What a picture of arms shows, as text or as plain data."""
     if kind == "table":
         return iter([_arms_page(scene, wanted)])
-    document = arms_record(scene, wanted)
-    arms, head = document["arms"], envelope("robot", scene.arm.robot.id, scene.units)
+    document, head = arms_record(scene, wanted), envelope("robot", scene.arm.robot.id, scene.units)
+    if "trees" in document:
+        trees = document["trees"]
+
+        def tree_csv() -> bytes:
+            corners = ((i, k, m, *point) for i, tree in enumerate(trees, 1) for k, line in enumerate(tree["lines"], 1)
+                       for m, point in enumerate(line, 1))  # fmt: skip
+            return csv_records(["tree", "line", "corner", "x", "y", "z"], corners)
+
+        return written(kind, document, ({**head, **tree} for tree in trees), tree_csv)
+    arms = document["arms"]
 
     def csv() -> bytes:
         corners = ((i, k, *point) for i, arm in enumerate(arms, 1) for k, point in enumerate(arm["points"], 1))
@@ -30,12 +43,20 @@ def arms_written(kind: str, scene: Scene, wanted: AskedPostures) -> Iterator[byt
 
 
 def _arms_page(scene: Scene, wanted: AskedPostures) -> bytes:
+    from robokin.model import Robot
     from robokin.pictures.arm_text import arm_text
     from robokin.reports.page_tables import heading, pairs, render
 
     robot, units = scene.arm.robot, scene.units
-    T = poses_in(forward_kinematics(robot, scene.postures[0].q), units)
-    entries = [("tool", "  ".join(show(value) for value in T[:3, 3].tolist()) + f"  {units.length}")]
+    q = scene.postures[0].q
+    if isinstance(robot, Robot):
+        poses = {"tool": forward_kinematics(robot, q)}
+    else:
+        poses = dict(zip(robot.tips[:MOST_TIPS], tip_poses(robot, q), strict=False))
+    places = {name: poses_in(T, units)[:3, 3].tolist() for name, T in poses.items()}
+    entries = [(name, "  ".join(map(show, place)) + f"  {units.length}") for name, place in places.items()]
+    if not isinstance(robot, Robot) and len(robot.tips) > MOST_TIPS:
+        entries.append(("…", f"{len(robot.tips)} tips: robokin fk has all"))
     named = [posture for posture in scene.postures if posture.label]
     entries += [(f"{k}", posture.label) for k, posture in enumerate(named, start=1)]
     return render(heading(scene.title, scene.subtitle), "", arm_text(scene), pairs(entries))

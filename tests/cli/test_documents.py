@@ -55,6 +55,7 @@ COMMANDS = [
     ["path", "planar2r", "--from", "10,20", "--xy", "9,9", "--line", "--steps", "3"],
     ["plot", "puma560"], ["plot", "planar3r", "--q", "30,40,50", "--q", "60,20,10", "--frames"],
     ["plot", "scara", "--ik", "400,200,300"], ["plot", "planar2r", "--ik", "9,9"], ["plot", "bennett"],
+    ["plot", "human-hand", "--q", "pinch", "--q", "open", "--frames"],
     ["check", "fk", "puma560", "--q", "home", "--expect", "-149.09, 921.12, 20.32"],
     ["check", "fk", "planar2r", "--q", "90,0", "--expect", "Trans(0,1.6,0)Rot(z,90)"],
     ["check", "fk", "planar2r", "--q", "0,0", "--expect", ""],

@@ -216,3 +216,55 @@ def test_targets_are_said_as_for_ik(call):
     assert call("plot", "planar3r", "--xy", "0.9,1.2", "--phi", "90").status == 0
     assert call("plot", "planar3r", "--xy", "0.9,1.2", "--ik", "1,1").status == 2
     assert call("plot", "bennett", "--xyz", "1,1,1").status == 2
+
+
+def test_a_tree_is_drawn_whole_in_every_format(call, tmp_path):
+    answer = call("plot", "human-hand", "--q", "pinch")
+    assert (answer.status, answer.err) == (0, "")
+    assert answer.lines[0] == "Human hand  q = pinch"
+    assert max(map(len, answer.lines)) <= 80
+    assert [line.split()[0] for line in answer.lines[-5:]] == ["thumb", "index", "middle", "ring", "little"]
+    tips = call("fk", "human-hand", "--q", "pinch", "--json").json["tips"]
+    document = call("plot", "human-hand", "--q", "pinch", "--json").json
+    (tree,) = document["trees"]
+    assert tree["tips"].keys() == tips.keys()
+    ends = np.concatenate(tree["lines"])
+    for name, pose in tips.items():
+        assert np.allclose(tree["tips"][name]["matrix"], pose["matrix"], atol=1e-9)
+        assert np.min(np.linalg.norm(ends - pose["position"], axis=1)) < 1e-6
+    assert len(tree["joints"]) == 21
+    table = call("plot", "human-hand", "--q", "pinch", "--q", "open", "-f", "csv")
+    assert table.columns == ["tree", "line", "corner", "x", "y", "z"]
+    assert {(row[0], row[1]) for row in table.numbers.tolist()} == {(i, k) for i in (1, 2) for k in range(1, 6)}
+    lines = call("plot", "human-hand", "--q", "pinch", "--q", "open", "-f", "jsonl").jsonl
+    assert [(line["label"], line["ghost"]) for line in lines] == [("pinch", False), ("open", True)]
+    path = tmp_path / "hand.html"
+    assert call("plot", "human-hand", "--q", "fist", "-o", path).status == 0
+    data = page_data(path)
+    assert [name for name, _ in data["groups"]] == ["thumb", "index", "middle", "ring", "little"]
+    assert list(data["poses"]) == ["default", "open", "fist", "pinch", "tripod"]
+    one = call("plot", "human-hand", "--tip", "index", "--ik", "150,30,-60", "--json").json
+    assert one["reachable"]
+    assert len(one["arms"]) > 1
+
+
+def test_a_finger_whose_joints_hang_together_is_drawn_and_notes_are_said_once(call, tmp_path):
+    path = tmp_path / "finger.urdf"
+    joint = (
+        '<joint name="{0}" type="revolute"><parent link="{1}"/><child link="{2}"/>'
+        '<origin xyz="0.04 0 0" rpy="{3} 0 0"/><axis xyz="0 0 1"/>'
+        '<limit lower="0" upper="1.5" effort="1" velocity="1"/>{4}</joint>'
+    )
+    mimic = '<mimic joint="pip" multiplier="0.5" offset="0.1"/>'
+    path.write_text(
+        '<robot name="finger"><link name="a"/><link name="b"/><link name="c"/>'
+        + joint.format("pip", "a", "b", "1.5708", "")
+        + joint.format("dip", "b", "c", "0", mimic)
+        + "</robot>"
+    )
+    answer = call("plot", path, "--q", "0.4", "--json")
+    assert answer.status == 0
+    assert answer.err.count("cut in print") == 1
+    (tree,) = answer.json["trees"]
+    assert [joint["name"] for joint in tree["joints"]] == ["pip", "dip"]
+    assert call("plot", path, "--q", "0.4,0.3").status == 2

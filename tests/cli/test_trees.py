@@ -94,12 +94,15 @@ def test_where_one_is_meant_of_several_they_are_listed(call, fingers):
         ["jacobian", "--q", "1"],
         ["workspace"],
         ["singular"],
-        ["plot"],
     ):
         refused(call(command[0], fingers, *command[1:]), "has 2 tips, expected --tip with one of index, ring")
     refused(call("fk", fingers, "--tip", "rin", "--q", "0"), "found the unknown link 'rin'; did you mean 'ring'")
     refused(call("fk", fingers, "--root", "index.mcp", "--tip", "ring", "--q", "0"), "no joints lead from link")
     refused(call("fk", fingers, "--frames", "--q", "point"), "is a tree, expected --tip")
+    refused(call("plot", fingers, "--ik", "1,2,3"), "--ik: Two fingers is a tree", "--tip with one of index, ring")
+    refused(call("plot", fingers, "--xyz", "1,2,3"), "--xyz: Two fingers is a tree")
+    refused(call("plot", fingers, "--q", "1,2,3"), "found 3 values", "expected 4")
+    refused(call("plot", fingers, "--root", "palm.wrist"), "has 2 tips")
     refused(call("fk", fingers, "--q", "1,2,3"), "found 3 values", "expected 4")
     refused(call("dof", "four-bar", "--tip", "x"), "expected the description of a robot or a tree")
 

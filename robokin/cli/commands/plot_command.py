@@ -1,4 +1,4 @@
-"""`robokin plot`: pictures of an arm or a mechanism, still or turning."""
+"""`robokin plot`: pictures of an arm, a tree or a mechanism, still or turning."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from robokin.errors import InputError, shown
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from robokin.arrays import Array
     from robokin.cli.targets import Target
-    from robokin.model import Mechanism, Robot
+    from robokin.model import Mechanism, Robot, Tree
     from robokin.units import Units
 
 
@@ -57,12 +58,13 @@ def command(
     json: JsonOption = False,
     description: DescriptionOptions,
 ) -> int:
-    """A picture of an arm or a mechanism: links, joints by kind, frames, and every solution of a target.
+    """A picture of an arm, a hand or a mechanism: links, joints by kind, frames, and every solution of a target.
 
     Joints that turn are cylinders along their axes, joints that slide are boxes with their stroke; frames are x red,
     y green, z blue. An .html is one page that needs no network: the arm turns with the mouse and has a slider for
-    each joint; a mechanism has one along its motion. Without --output a stick figure is drawn as text; --json has its
-    corners. `robokin dof NAME --plot FILE` draws a mechanism with another drive, or the paths of points.
+    each joint, in the branches of a hand or another tree; a mechanism has one along its motion. Without --output a
+    stick figure is drawn as text; --json has its corners. `robokin dof NAME --plot FILE` draws a mechanism with
+    another drive, or the paths of points.
 
     The status is 3 when the target cannot be reached; the nearest configuration is then drawn.
 
@@ -73,19 +75,18 @@ def command(
         robokin plot puma560 --ik "Trans(500,149,200) RPY(0,90,0)" -o arms.html
         robokin plot scara --ik 400,200,300 -f csv
         robokin plot planar3r --xy 0.9,1.2 --phi 90
+        robokin plot human-hand --q pinch
+        robokin plot human-hand --tip index --ik 150,30,-60 -o finger.html
         robokin plot bennett -o bennett.html
     """
     from dataclasses import replace
 
-    from robokin.cli.arguments import way_of
-    from robokin.cli.configurations import typed_configurations
+    from robokin.cli.arguments import expect_jointed, way_of
     from robokin.inverse.solutions import Question
-    from robokin.model import Mechanism
-    from robokin.model.joint_units import joint_factors
+    from robokin.model import Mechanism, Tree
     from robokin.pictures.arm import default_configuration
     from robokin.pictures.drawn_arm import AskedPostures, arm_picture, given_postures, scene_of, solved_postures
     from robokin.pictures.picture_files import picture_ending
-    from robokin.records.pose_blocks import PoseMaker
     from robokin.reports.picture_report import arms_written
     from robokin.tables.sink import sink
 
@@ -94,28 +95,21 @@ def command(
         raise InputError("--output draws a picture by the file's ending, expected no --format and no --json")
     ending = picture_ending(output, "--output") if output is not None else ""
     eye = _view(view)
-    loaded = description.entry(robot, way_of(mode))
+    loaded = description.anything(robot, way_of(mode))
     if isinstance(loaded, Mechanism):
         for option, value in (("--q", q), ("--ik", ik), *target.texts.items(), ("--frames", frames)):
             if value:
                 raise InputError(f"{option} is for robots, expected none for a mechanism: `robokin dof` has --drive")
         _draw_mechanism(loaded, description.over(loaded.units), kind, output, eye)
         return DONE
-    model, units = description.robot(robot)
-    if q and "-" in q:
-        raise InputError("--q: found '-', expected joint values or the name of a pose; a picture reads no input")
-    values = typed_configurations(q or [], model, units)
-    if len(values):
-        for note in PoseMaker(model, units, False).outside_notes(values):
-            say(note)
-    given, name = [value * joint_factors(model, units) for value in values], ""
-    if q and q[0].strip() in model.poses:
-        name = q[0].strip()
+    model = expect_jointed(robot, loaded)
+    units = description.over(model.units)
+    given, name = _configurations(q, model, units)
     asked = _wanted_target(ik, target, model, units)
     if not given and asked is None:
         home, name = default_configuration(model)
         given = [home]
-    if asked is None:
+    if asked is None or isinstance(model, Tree):
         wanted = AskedPostures(given_postures(model, units, given))
     else:
         wanted = solved_postures(Question(model, asked.T, asked.task), units, given, asked.notes)
@@ -129,6 +123,22 @@ def command(
     with sink(output) as stream:
         stream.writelines(drawn)
     return NO if wanted.unreachable else DONE
+
+
+def _configurations(q: list[str] | None, model: Robot | Tree, units: Units) -> tuple[list[Array], str]:
+    """The configurations (n,) [rad | m] of --q, and the pose's name where the first is one. Raises InputError."""
+    from robokin.cli.configurations import typed_configurations
+    from robokin.model.joint_units import joint_factors
+    from robokin.records.pose_blocks import PoseMaker
+
+    if q and "-" in q:
+        raise InputError("--q: found '-', expected joint values or the name of a pose; a picture reads no input")
+    values = typed_configurations(q or [], model, units)
+    if len(values):
+        for note in PoseMaker(model, units, False).outside_notes(values):
+            say(note)
+    name = q[0].strip() if q and q[0].strip() in model.poses else ""
+    return [value * joint_factors(model, units) for value in values], name
 
 
 def _draw_mechanism(
@@ -195,11 +205,16 @@ def _target(options: dict[str, str | None], robot: Robot, units: Units) -> Targe
         raise InputError(re.sub(rf"{next(iter(options))}\b", "--ik", str(error))) from None
 
 
-def _wanted_target(ik: str | None, options: TargetOptions, robot: Robot, units: Units) -> Target | None:
+def _wanted_target(ik: str | None, options: TargetOptions, robot: Robot | Tree, units: Units) -> Target | None:
     """The target of --ik, or of the options that `robokin ik` has; None without. Raises InputError for both."""
     from robokin.cli.targets import parse_target
+    from robokin.model import Tree
 
     options.exclude("--ik", ik)
+    if isinstance(robot, Tree):
+        for option in ["--ik"] if ik is not None else options.given:
+            raise InputError(f"{option}: {robot.name} is a tree, expected --tip with one of {robot.listed_tips()}")
+        return None
     if (ik is not None or options.given) and not robot.n:
         raise InputError(f"{robot.name} has no joints, expected a robot that can move")
     if ik is not None:
