@@ -66,7 +66,11 @@ def row_frames(robot: Robot, q: ArrayLike) -> Array:
     q: (..., n) joint values in file order [rad | m]. Returns (..., rows, 4, 4) [m].
     """
     q, moving = joint_motions(robot, q)
-    return run(_row_program(moving, True), q)
+    T = run(_row_program(moving, True), q)
+    if len(robot.rows) == len(moving.rows):
+        return T
+    # A helical row is two of the arm's that moves: its frame is the one after both.
+    return T[..., np.cumsum([1 + bool(row.pitch) for row in robot.rows]) - 1, :, :]
 
 
 def joint_frames(robot: Robot, q: ArrayLike) -> Array:

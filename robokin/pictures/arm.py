@@ -17,7 +17,7 @@ from robokin.kernel.chain import chain_of
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import joint_motion
 from robokin.kinematics.forward import joint_frames
-from robokin.model import Robot, Tree
+from robokin.model import CoupledRobot, Robot, Tree
 from robokin.pictures.skeleton import ArmSkeleton, FrameMark, skeleton_of
 from robokin.spatial import exact
 
@@ -128,7 +128,7 @@ def default_configuration(robot: Robot | Tree) -> tuple[Array, str]:
 
 def body_frames(robot: Robot | Tree, q: Array) -> Array:
     """(b + 1, 4, 4) [m] the frames of the bodies in the world at q: (n,) [rad | m]."""
-    if not isinstance(robot, Robot) or _stands_elsewhere(robot):
+    if not isinstance(robot, Robot) or isinstance(robot, CoupledRobot) or _stands_elsewhere(robot):
         return skeleton_of(robot).frames(q)
     chain = chain_of(robot)
     moves = zip(joint_frames(robot, q)[:-1], chain.revolute, q + chain.offsets, strict=True)

@@ -74,8 +74,8 @@ def _arm_record(scene: Scene, robot: Robot, posture: Posture) -> dict[str, Any]:
         "within_limits": bool(robot.within_limits(posture.q)),
         "points": points.tolist(),
         "joints": [
-            _joint_record(joint.name, joint.type.value, frame, units)
-            for joint, frame in zip(robot.joints, frames[1:], strict=True)
+            _joint_record(body.joint.name, str(body.joint.type), frame, units)
+            for body, frame in zip(scene.arm.skeleton.bodies, frames[1:], strict=True)
         ],
         "pose": pose_records(poses_in(forward_kinematics(robot, posture.q), units)[None], units)[0],
     }  # fmt: skip
