@@ -47,6 +47,13 @@ gains a part of the distance only."""
 NEAR_LAST = 3
 """Starts on each face for these."""
 
+ALMOST, NEAR_ALMOST = 5e-5, 16
+"""What is still this near [size], and no more, is sought from so many starts on each face and edge: where the arm is
+singular with joints at their limits, steps gain ever less, and only starts on the right side of it arrive."""
+
+ON_LIMIT, STEPS_ON_LIMITS = 1e-6, 20
+"""How near a limit [rad | size] a joint counts as on it in the very last steps, and how many these are."""
+
 MU = 0.1
 """The damping at first, as a part of the distance."""
 
@@ -189,6 +196,34 @@ class Descent:
             more = [table.near(points[:, left], NEAR_LAST, 0) for table in (self.tables or [[]])[0]]
             starts = np.concatenate([values[None][:, :, left], *more])
             self._search(points, left, starts, [(STUCK_LAST, STEPS_LAST)] * len(starts), inside, least, values)
+        left = np.flatnonzero(~inside & (least <= ALMOST**2))
+        if len(left):
+            more = [table.near(points[:, left], NEAR_ALMOST, 0) for tables in self.every_table for table in tables]
+            starts = np.concatenate(more) if more else np.empty((0, len(values), len(left)))
+            self._search(points, left, starts, [(STUCK_LAST, STEPS_LAST)] * len(starts), inside, least, values)
+            for i in left[~inside[left]].tolist():
+                far, q = self._on_the_limits(points[:, i], values[:, i])
+                if far < least[i]:
+                    least[i], values[:, i], inside[i] = far, q, far <= REACHED**2
+
+    def _on_the_limits(self, t: Array, q: Array) -> tuple[float, Array]:
+        """What is left of the squared distance [size²] to t (3,) by undamped steps from q (n,), and where.
+
+        Joints at their limits stay there: what the others can do there alone may be ill conditioned, and damping holds
+        them back.
+        """
+        low, high, scale = self.low, self.high, self.scale[:, 0]
+        held = ~self.full & ((q <= low + ON_LIMIT * scale) | (q >= high - ON_LIMIT * scale))
+        least, best = float(np.inf), q
+        for _ in range(STEPS_ON_LIMITS):
+            e, J, _ = self._model(t[:, None], q[:, None])
+            far = float(np.sum(e * e))
+            if far < least:
+                least, best = far, q
+            dx = np.asarray(np.linalg.lstsq(np.where(held, 0.0, J[:, :, 0].T), e[:, 0], rcond=1e-12)[0], np.float64)
+            ahead = q + limited(dx[:, None], STEP, axis=0)[:, 0] * scale
+            q = np.asarray(np.where(self.full, ahead, np.clip(ahead, low, high)))
+        return least, best
 
     def _search(
         self,

@@ -42,14 +42,27 @@ def planar(*rows):
 FOLDED = planar((0.84, 12, 69), (0.26, -239, -112), (0.62, -237, 76))
 
 
+ON_EDGES = robokin.forward_kinematics(
+    robokin.load("so-101"),
+    [
+        [-1.1124600085838021, -1.7453292519943295, -1.69, -0.2081972607069571, -0.002914782828840501],
+        [0.9954015489747872, -1.7453292519943295, -1.69, -0.19054974924779966, 0.0828695244379114],
+    ],
+)[:, :3, 3]
+"""Where the SO-101 comes with its second and third joint as far folded as they go."""
+
+
 @pytest.mark.parametrize(
     ("robot", "point"),
     [
         (FOLDED, (1.1982485243397283, -0.2883585541295732, 0.0)),
         (robokin.load("scorbot"), (-0.2760816838856534, -0.1532972107628303, 0.7367543185347126)),
         (drawn_arm(28), (0.9499253653153266, 0.7703069586076401, 0.3664731491408801)),
+        # Two joints at their limits, with which the others are next to singular.
+        (robokin.load("so-101"), ON_EDGES[0]),
+        (robokin.load("so-101"), ON_EDGES[1]),
     ],
-    ids=["three links", "scorbot", "a sliver of five joints"],
+    ids=["three links", "scorbot", "a sliver of five joints", *(f"on an edge {i}" for i in (1, 2))],
 )
 def test_points_behind_a_barrier(robot, point):
     assert reachable(space_of(robot), [point]).all()
