@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 
 from robokin.arrays import Array, Index
+from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.numeric.least_squares import descend
 from robokin.inverse.self_motion.nearest_member import nearest_on
@@ -17,7 +18,7 @@ from robokin.inverse.verify import CLOSES
 from robokin.kernel.damped_newton import brought_down, limited
 from robokin.kernel.frames import pose
 from robokin.kernel.residual import error_and_jacobian
-from robokin.model import Robot
+from robokin.model import CoupledRobot, Robot
 
 NEAR = 0.1
 """A step that moves no joint by more [rad | size] is no jump: different solutions are farther apart but near a
@@ -185,3 +186,49 @@ class Follower:
     def move(self, q: Array, other: Array) -> float:
         """The greatest joint move between two configurations [rad | size]."""
         return float(np.max(np.abs(other - q) / self.scale))
+
+
+class Follows(Protocol):
+    """What `Follower` and `CoupledFollower` both do."""
+
+    def advance(self, q: Array, before: float, i: int) -> tuple[float, Array, str]:
+        """See `Follower.advance`."""
+
+    def nearest(self, q: Array, s: float) -> Array | None:
+        """See `Follower.nearest`."""
+
+    def turned_start(self, q: Array, i: int) -> Array | None:
+        """See `Follower.turned_start`."""
+
+
+class CoupledFollower:
+    """The same for a robot whose joints hang on each other: the arm whose joints move one by one goes ahead."""
+
+    def __init__(self, robot: CoupledRobot, follower: Follower) -> None:
+        self.drive, self.follower = robot.drive, follower
+
+    def advance(self, q: Array, before: float, i: int) -> tuple[float, Array, str]:
+        """See `Follower.advance`."""
+        reached, v, why = self.follower.advance(self.drive.motions(q), before, i)
+        return reached, self.drive.variables_for(v), why
+
+    def nearest(self, q: Array, s: float) -> Array | None:
+        """See `Follower.nearest`."""
+        v = self.follower.nearest(self.drive.motions(q), s)
+        return None if v is None else self.drive.variables_for(v)
+
+    def turned_start(self, q: Array, i: int) -> Array | None:
+        """See `Follower.turned_start`."""
+        v = self.follower.turned_start(self.drive.motions(q), i)
+        return None if v is None else self.drive.variables_for(v)
+
+
+def follower_of(robot: Robot, at: Callable[[Array], Array], task: Literal["pose", "position"], s: Array) -> Follows:
+    """What follows poses at(s), looked up at places s (k,). Raises InputError where joints follow others."""
+    if not isinstance(robot, CoupledRobot):
+        return Follower(robot, at, task, s)
+    if not robot.drive.invertible:
+        raise InputError(
+            f"{robot.coupled}, expected no line: a robot whose joints move one by one, or add to each other"
+        )
+    return CoupledFollower(robot, Follower(robot.free_motion, at, task, s))

@@ -24,11 +24,11 @@ from robokin.arrays import Array
 from robokin.brief import Answer
 from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_finite, expect_flag, expect_whole
-from robokin.inverse.follow import MOST, Follower
+from robokin.inverse.follow import MOST, Follows, follower_of
 from robokin.inverse.solve import target_poses
 from robokin.kinematics.forward import forward_kinematics
 from robokin.kinematics.velocity import SINGULAR, TaskName, differential_kinematics, lost_directions, motion_task
-from robokin.model import Robot, expect_robot
+from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.model.robot import LIMIT_TOLERANCE
 from robokin.spatial import axis_angle_from_rotation, rotation_from_axis_angle, transform
 
@@ -143,7 +143,7 @@ def follow_line(
     t = _times(steps)
     s = time_law(t)
     line = Line(forward_kinematics(robot, first), target)
-    follower = Follower(robot, line.at, chosen, s)
+    follower = follower_of(robot, line.at, chosen, s)
     rows, fraction, event = [first], 1.0, None
     if limits and not robot.within_limits(first):
         fraction, event = _leaves(robot, first, first)
@@ -209,19 +209,37 @@ def _configuration(robot: Robot, q: ArrayLike, name: str) -> Array:
 def _leaves(robot: Robot, first: Array, last: Array) -> tuple[float, Event | None]:
     """Up to which fraction the segment from first to last (n,) stays within the limits, and what ends it."""
     worst, event = 1.0, None
-    for k in range(robot.n):
-        for limit, side in zip(robot.limits[k], (-1.0, 1.0), strict=True):
-            before, after = side * (first[k] - limit), side * (last[k] - limit)
+    begins, ends, limits, words = _limited(robot, np.stack([first, last]))
+    for k, said in enumerate(words):
+        for limit, side in zip(limits[k], (-1.0, 1.0), strict=True):
+            before, after = side * (begins[k] - limit), side * (ends[k] - limit)
             if max(before, after) <= LIMIT_TOLERANCE:
                 continue
             at = 0.0 if before > LIMIT_TOLERANCE else float(-before / (after - before))
             if event is None or at < worst:
-                value = float(first[k] if at == 0.0 and before > 0.0 else limit)
-                worst, event = at, Event("limit", at, f"joint {k + 1} leaves its limits", k + 1, value)
+                value = float(begins[k] if at == 0.0 and before > 0.0 else limit)
+                worst, event = (
+                    at,
+                    Event("limit", at, f"{said} leaves its limits", k + 1 if k < robot.n else None, value),
+                )
     return worst, event
 
 
-def _limit_event(robot: Robot, follower: Follower, q: Array, s: float, reached: float) -> tuple[float, Event | None]:
+def _limited(robot: Robot, q: Array) -> tuple[Array, Array, Array, list[str]]:
+    """Of two configurations q (2, n) the values (k,) that have limits, these (k, 2), and what each value is called.
+
+    Beside the variables these are the joints that hang on several of them.
+    """
+    names = [f"joint {k + 1}" for k in range(robot.n)]
+    if not isinstance(robot, CoupledRobot):
+        return q[0], q[1], robot.limits, names
+    moved = [row.name for row in robot.free_motion.joints]
+    values = np.concatenate([q, robot.drive.motions(q)], axis=1)
+    limits = np.concatenate([robot.limits, robot.drive.limits])
+    return values[0], values[1], limits, names + [f"the motion of joint {name}" for name in moved]
+
+
+def _limit_event(robot: Robot, follower: Follows, q: Array, s: float, reached: float) -> tuple[float, Event | None]:
     """Where between s, with q, and `reached` the first joint leaves its limits."""
     low, high = s, reached
     outside = q
@@ -234,10 +252,10 @@ def _limit_event(robot: Robot, follower: Follower, q: Array, s: float, reached: 
             low, q = middle, found
         else:
             high, outside = middle, outside if found is None else found
-    over = np.maximum(outside - robot.limits[:, 1], robot.limits[:, 0] - outside)
-    k = int(np.argmax(over))
-    value = float(robot.limits[k, 1] if outside[k] > robot.limits[k, 1] else robot.limits[k, 0])
-    return low, Event("limit", low, f"joint {k + 1} leaves its limits", k + 1, value)
+    values, _, limits, words = _limited(robot, np.stack([outside, outside]))
+    k = int(np.argmax(np.maximum(values - limits[:, 1], limits[:, 0] - values)))
+    value = float(limits[k, 1] if values[k] > limits[k, 1] else limits[k, 0])
+    return low, Event("limit", low, f"{words[k]} leaves its limits", k + 1 if k < robot.n else None, value)
 
 
 def _stopped(robot: Robot, line: Line, s: float, q: Array, why: str, task: PathTask) -> Event:
