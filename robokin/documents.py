@@ -41,6 +41,7 @@ def document_of(value: Answer, units: Units | None = None) -> Any:
     """
     from robokin.inverse.joint_paths import Path
     from robokin.inverse.solutions import BatchResult, Result
+    from robokin.inverse.tip_targets import TipAnswer
     from robokin.kinematics.velocity import Differential
     from robokin.mobility.manoeuvrability import Manoeuvrability
     from robokin.mobility.verdict import Mobility
@@ -54,6 +55,10 @@ def document_of(value: Answer, units: Units | None = None) -> Any:
         return value.record(own)
     if isinstance(value, Result | BatchResult):
         return _solutions(value, own)
+    if isinstance(value, TipAnswer):
+        from robokin.records.tip_solution_records import TipSolutionRecords
+
+        return TipSolutionRecords(value, own or value.question.tree.units).document()
     if isinstance(value, Differential):
         return _differential(value, own)
     if isinstance(value, Path):

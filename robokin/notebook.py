@@ -28,6 +28,7 @@ def html_of(value: Answer) -> str:
     """An answer, a robot, a mechanism or a wheeled base as HTML."""
     from robokin.inverse.joint_paths import Path
     from robokin.inverse.solutions import BatchResult, Result
+    from robokin.inverse.tip_targets import TipAnswer
     from robokin.kinematics.velocity import Differential
 
     if isinstance(value, Robot):
@@ -41,6 +42,8 @@ def html_of(value: Answer) -> str:
     if isinstance(value, BatchResult):
         rows = [[str(i), str(count), *_least(value, i)] for i, count in enumerate(value.count[:MOST_ROWS].tolist())]
         return _captioned(repr(value)) + _table(["target", "solutions", "position error [m]"], rows, len(value))
+    if isinstance(value, TipAnswer):
+        return _groups(document_of(value))
     if isinstance(value, Path):
         return _path(document_of(value))
     if isinstance(value, Differential) and value.q.ndim == 1:
@@ -179,6 +182,23 @@ def _solutions(document: dict[str, Any]) -> str:
     return _captioned(f"{count}, {document['method']}", basis, said) + _table(
         ["", *names, "branch", "within limits"], rows, len(document["solutions"])
     )
+
+
+def _groups(document: dict[str, Any]) -> str:
+    """The solutions of each group of tips, in its own joints."""
+    parts = []
+    for group in document["groups"]:
+        solutions = group["solutions"]
+        found = counted(len(solutions), "solution") if solutions else f"no solution: {group['reason']}"
+        basis = group["certificate"] if group["complete"] or not solutions else "perhaps not all"
+        rows = [
+            [str(i), *(show(one["q"][joint - 1]) for joint in group["joints"]), one["branch"]]
+            for i, one in enumerate(solutions[:MOST_ROWS], start=1)
+        ]
+        names = ["", *(f"q{joint}" for joint in group["joints"]), "branch"]
+        parts.append(_captioned(f"{', '.join(group['tips'])}: {found}, {group['method']}", basis))
+        parts += [_table(names, rows, len(solutions))] if rows else []
+    return "".join(parts) + f"<p>{escape(_said(document['units']))}</p>"
 
 
 def _path(document: dict[str, Any]) -> str:

@@ -24,7 +24,7 @@ GROUPS = {
         "forward_kinematics", "tip_poses", "link_frames", "jacobian", "differential_kinematics",
         "singular_configurations", "symbols",
     ),
-    "Inverse kinematics and paths": ("solve_ik", "interpolate_joints", "follow_line"),
+    "Inverse kinematics and paths": ("solve_ik", "solve_tips", "interpolate_joints", "follow_line"),
     "Workspace and mobility": ("analyse_workspace", "mobility_of", "manoeuvrability_of"),
     "Marks": (
         "check_pose", "check_configuration", "check_solutions", "check_table", "Tolerance", "default_tolerance",
@@ -40,7 +40,7 @@ GROUPS = {
 }  # fmt: skip
 """Every public name under the heading where it is looked for."""
 
-INSIDE = ("Solution", "Family", "Arc", "Event")
+INSIDE = ("Solution", "Family", "Arc", "TipGroup", "Event")
 """Classes that stand in the results of others, and are read as often as these."""
 
 WIDTH = 110

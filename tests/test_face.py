@@ -64,6 +64,8 @@ def public_values():
     yield from (PUMA, PUMA.rows[0], FOUR_BAR, FOUR_BAR.joints[0], CAR, CAR.wheels[0], PUMA.units, HAND)
     yield from (result, result[0], *result.families, *(arc for family in result.families for arc in family.arcs))
     yield from (result.question, robokin.solve_ik(PUMA, [T, T]), robokin.load("human-body"))
+    tips = robokin.solve_tips(HAND, {"index": robokin.tip_poses(HAND, HAND.poses["pinch"])[1]})
+    yield from (tips, tips.groups[0], tips.question, *tips.groups[0].result)
     yield from robokin.singular_configurations(PLANAR)
     path = robokin.interpolate_joints(PUMA, Q, Q + 0.5, 200)
     yield from (path, *path.events, robokin.follow_line(PLANAR, [0.3, 0.4], robokin.forward_kinematics(PLANAR, [1, 1])))
@@ -125,6 +127,7 @@ def test_html_holds_no_markup_of_others(tmp_path):
         robokin.analyse_workspace(robot, samples=64), robokin.mobility_of(mechanism), robokin.draw(robot, kind="text"),
         robokin.draw(robot, kind="html"), robokin.notebook.matrix(T), CAR, robokin.manoeuvrability_of(CAR),
         robokin.solve_ik(robot, [np.eye(4), np.eye(4)]),
+        robokin.solve_tips(HAND, {"index": np.eye(4)}, "position"),
     ]  # fmt: skip
     for value in shown:
         html = value._repr_html_()
@@ -191,6 +194,17 @@ DOCUMENTS = {
         ["ik", "planar2r", "--xyz", "9,9,0"],
         lambda: robokin.documents.ik(PLANAR, robokin.transform("Trans(9,9,0)"), task="position"),
     ),
+    "ik of several tips": (
+        ["ik", "human-hand", "--target", "index=Trans(150,30,-60) RPY(-90,66,7.6)", "--target", "little=110,-34,-50"],
+        lambda: robokin.solve_tips(
+            HAND,
+            {
+                "index": robokin.transform("Trans(150,30,-60) RPY(-90,66,7.6)", MM_DEG),
+                "little": robokin.transform("Trans(110,-34,-50)", MM_DEG),
+            },
+            {"little": "position"},
+        ).record(),
+    ),
     "jacobian": (["jacobian", "puma560", "--q", "home"], lambda: robokin.documents.jacobian(PUMA, PUMA.poses["home"])),
     "jacobian of several": (
         ["jacobian", "planar2r", "--q", "0,0", "--q", "10,20", "--frame", "tool"],
@@ -256,6 +270,10 @@ RIGHT = {
     "solve_ik": {
         "robot": PLANAR, "T": PLANAR_T, "limits": True, "near": [0.0, 0.0], "method": "auto", "task": "pose", "most": 2,
         "seed": 0, "turns": False, "hold": {0: 0.3}, "cores": 1,
+    },
+    "solve_tips": {
+        "tree": HAND, "targets": {"index": robokin.tip_poses(HAND, HAND.poses["pinch"])[1]}, "task": "position",
+        "limits": True, "near": np.zeros(21), "most": 2, "seed": 0,
     },
     "follow_line": {"robot": PLANAR, "start": [0.3, 0.4], "T": PLANAR_T, "steps": 2, "limits": True, "task": None},
     "interpolate_joints": {"robot": PLANAR, "start": [0.3, 0.4], "end": [0.5, 0.6], "steps": 2, "limits": True},

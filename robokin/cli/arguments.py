@@ -41,6 +41,15 @@ def load_jointed(name: str, overrides: dict[str, str], part: Part | None = None)
     return expect_jointed(name, load_noted(name, overrides, None, part))
 
 
+def load_tree_of(name: str, overrides: dict[str, str], part: Part) -> Tree:
+    """The tree that a command works on, a robot as one of a single branch. Raises InputError."""
+    from robokin.formats.part import tree_of
+    from robokin.model import Robot
+
+    found = expect_jointed(name, load_noted(name, overrides, None, part))
+    return tree_of(found) if isinstance(found, Robot) else found
+
+
 def load_noted(
     name: str, overrides: dict[str, str], mode: int | None, part: Part | None
 ) -> Robot | Mechanism | WheeledBase | Tree:

@@ -128,6 +128,15 @@ class DescriptionOptions(UnitOptions):
         found = load_jointed(name, parameter_overrides(self.set_), self.part())
         return found, self.over(found.units)
 
+    def tree(self, name: str) -> tuple[Tree, Units]:
+        """What a name or a path describes as a tree, whatever its tips, and the units to use. Raises InputError."""
+        from robokin.cli.arguments import load_tree_of
+        from robokin.formats.part import Part
+
+        part = Part(exact=self.exact, packages=package_folders(self.package), whole=True)
+        tree = load_tree_of(name, parameter_overrides(self.set_), part)
+        return tree, self.over(tree.units)
+
     def moving_robot(self, name: str) -> tuple[Robot, Units]:
         """The same of a robot that has joints. Raises InputError."""
         robot, units = self.robot(name)

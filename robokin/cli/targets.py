@@ -51,16 +51,16 @@ def parse_target(options: dict[str, str | None], robot: Robot, units: Units) -> 
             T = evaluate_transform(text, Scope(degrees=units.degrees), units, notes)
         except ExpressionError as error:
             raise InputError(f"--pose: {error}") from None
-        return Target(_placed(T[:3, :3], T[:3, 3], "--pose", units), "pose", tuple(notes))
+        return Target(placed(T[:3, :3], T[:3, 3], "--pose", units), "pose", tuple(notes))
     if kinds == ["--matrix"]:
         return _matrix(text, units)
     if kinds == ["--xy"]:
         return _planar(text, options.get("--phi"), robot, units)
     p = parse_place(text, "--xyz", robot, units)
     if not turns:
-        return Target(_placed(np.eye(3), p, "--xyz", units), "position")
+        return Target(placed(np.eye(3), p, "--xyz", units), "position")
     R, task = _rotation(turns[0], options[turns[0]] or "", units)
-    return Target(_placed(R, p, "--xyz", units), task)
+    return Target(placed(R, p, "--xyz", units), task)
 
 
 def _rotation(option: str, text: str, units: Units) -> tuple[Array, str]:
@@ -121,7 +121,8 @@ def _planar(text: str, phi: str | None, robot: Robot, units: Units) -> Target:
     return Target(_near(planar_pose(zero, place, angle), "--xy", units), "pose")
 
 
-def _placed(R: Array, p: Array, option: str, units: Units) -> Array:
+def placed(R: Array, p: Array, option: str, units: Units) -> Array:
+    """The pose (4, 4) [m] of a rotation (3, 3) and a place (3,) [m]. Raises InputError for one that is too far away."""
     return _near(transform(R, p), option, units)
 
 

@@ -9,12 +9,12 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.solutions import Arc, Family, Result
-from robokin.model import Robot
+from robokin.model import Robot, Tree
 from robokin.model.joint_units import in_units, joint_factors
 from robokin.units import Units
 
 
-def family_record(robot: Robot, units: Units, family: Family, result: Result) -> dict[str, Any]:
+def family_record(robot: Robot | Tree, units: Units, family: Family, result: Result) -> dict[str, Any]:
     """A self-motion in the JSON document; its solution counts from 1 as the list does."""
     return {
         "joints": list(family.joints),
@@ -31,7 +31,7 @@ def _interval(q: Array, whole: bool, joints: Sequence[int]) -> dict[str, Any]:
     return {"whole": whole, "from": q[0].tolist(), "to": q[-1].tolist(), "ranges": ranges}
 
 
-def arc_values(robot: Robot, units: Units, arc: Arc) -> Array:
+def arc_values(robot: Robot | Tree, units: Units, arc: Arc) -> Array:
     """The configurations (k, n) of an arc in the units."""
     return in_units(np.atleast_2d(arc.q), joint_factors(robot, units))
 

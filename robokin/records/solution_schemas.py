@@ -25,6 +25,7 @@ from robokin.records.schema_words import (
 )
 
 JOINTS = items(whole("A joint, from 1.", 1), "Joints, in numbers from 1.")
+TASK = word("What of it counts: all, position and z axis, or position.", "pose", "approach", "position")
 INTERVAL = record(
     "A piece of a self-motion within the joint limits.",
     {
@@ -105,8 +106,7 @@ def ik() -> Schema:
                 "What was asked for.",
                 {
                     "matrix": matrix("The pose of the end effector in the world"),
-                    "task": word("What of it counts: all, position and z axis, or position.", "pose", "approach",
-                                 "position"),
+                    "task": TASK,
                 },
             ),
             "reachable": flag("Whether there is a solution."),
@@ -125,8 +125,58 @@ def ik() -> Schema:
             "explanation": EXPLANATION,
         },
     )  # fmt: skip
-    return documents(
-        "ik", "Solutions of the inverse kinematics, a document a target.", ["solutions"], solutions=document
+    about = "Solutions of the inverse kinematics, a document a target, or one for targets of several tips."
+    return documents("ik", about, ["solutions"], solutions=document, tips=_tips())
+
+
+def _tips() -> Schema:
+    """The document for targets of several tips."""
+    target = record("What was asked of a tip.", {"matrix": matrix("The pose of the tip in the world"), "task": TASK})
+    error = record(
+        "How far a tip is from its target.",
+        {
+            "position_error": number("Distance, by forward kinematics [length].", 0.0),
+            "angle_error": number("Angle, by forward kinematics, 0 where it is not asked for [angle].", 0.0),
+        },
+    )
+    solution = record(
+        "A configuration of the whole tree; joints of other groups stand at the first solution of these.",
+        {
+            "q": Q,
+            "branch": text("Its name: shoulder, elbow, wrist."),
+            "within_limits": flag("Whether the joints of the group respect the joint limits."),
+            "tips": mapping(error, "The errors of the group's tips, by their names."),
+        },
+        {"self_motion": JOINTS},
+    )
+    group = record(
+        "Tips that are solved for together.",
+        {
+            "tips": texts("Their names."),
+            "joints": JOINTS,
+            "reachable": flag("Whether there is a solution."),
+            "complete": flag("Whether every solution is listed, or on one of `families`."),
+            "basis": maybe(word("What `complete` rests on.", "counted", "accounted"), "where it is false"),
+            "certificate": text("The basis in a sentence, or why there is none."),
+            "counts": mapping(whole("A number of candidates.", 0), "How many were left after each step."),
+            "families": items(FAMILY, "Self-motions through the targets."),
+            "method": text("How it was solved."),
+            "reason": maybe(text("Why there is no solution."), "where there is one"),
+            "solutions": items(solution, "The solutions."),
+            "nearest": maybe(solution, "where there is a solution, or none is known"),
+        },
+    )
+    return record(
+        "Solutions for targets of several tips (--target).",
+        {
+            **head("robot", ROBOT),
+            "targets": mapping(target, "The targets, by the tips' names."),
+            "reachable": flag("Whether every group has a solution."),
+            "complete": flag("Whether every solution of every group is listed."),
+            "q": maybe(Q, "where a group has no solution"),
+            "still": JOINTS,
+            "groups": items(group, "Groups of tips that share no joint with each other."),
+        },
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.solutions import Arc, Family, Result
-from robokin.model import Robot
+from robokin.model import Robot, Tree
 from robokin.number_text import show
 from robokin.records.self_motion_records import arc_values, solution_number
 from robokin.units import Units
@@ -51,9 +51,9 @@ def joints_can_move(numbers: Sequence[int], task: str) -> str:
 
 @dataclass(frozen=True)
 class FamilyWords:
-    """Writes self-motions of a robot in units. `limits` tells whether the joint limits count."""
+    """Writes self-motions of a robot or a tree in units. `limits` tells whether the joint limits count."""
 
-    robot: Robot
+    robot: Robot | Tree
     units: Units
     limits: bool = True
 

@@ -71,12 +71,13 @@ class AnswerTable:
         shown = self.solutions(result)
         joints = [self.records.joints(solution.q) for solution in shown]
         parts: list[Any] = [label + verdict(result, self.idle, held_in_words(self.held), self.turns)]
-        for drawn in self.drawn(shown, joints, bool(result.solutions)):
+        which = [(i + 1, bool(turns)) for i, turns in enumerate(self.robot.revolute)]
+        for drawn in drawn_solutions(shown, joints, bool(result.solutions), which, self.units):
             parts += ["", drawn]
         notes = list(self.notes(result, shown))
         if notes:
             parts += ["", *notes]
-        return render(*(_wrapped(part) for part in parts), *([""] if label else []))
+        return render(*map(filled, parts), *([""] if label else []))
 
     def notes(self, result: Result, shown: Sequence[Solution]) -> Iterator[str]:
         """What is to be said of the rows."""
@@ -132,45 +133,72 @@ class AnswerTable:
 
     def motions(self, result: Result, free: Sequence[tuple[int, ...]]) -> Iterator[str]:
         """The self-motions in words, given the joints of each solution that are free to move."""
-        together = [tuple(i for i in joints if i not in self.idle) for joints in free]
-        if any(len(joints) > len(rest) for joints, rest in zip(free, together, strict=True)):
-            yield f"free: {joint_names(self.idle)} may have any value; each posture is listed once"
         written = FamilyWords(self.robot, self.units, self.limits)
-        for family in filter(is_within, result.families if result.solutions else ()):
-            yield from written.lines(family, result, self.task)
-        told = [set(family.joints) for family in result.families]
-        untold = {joints for joints in together if joints and not any(known.issuperset(joints) for known in told)}
-        if self.analysis.redundancy and untold:
-            union = sorted({i for joints in untold for i in joints})
-            yield f"self-motion: {joints_can_move(union, self.task)}; well spread postures are listed"
-            return
-        for joints in sorted(untold):
-            yield f"self-motion: {joints_can_move(joints, self.task)}; one such posture is listed"
+        yield from motions_in_words(result, free, self.idle, written, self.task, bool(self.analysis.redundancy))
 
-    def drawn(self, shown: Sequence[Solution], joints: Sequence[Sequence[float]], solved: bool) -> Iterator[Any]:
-        """The solutions, a row each; side by side in several tables where a page is too narrow for one."""
-        labels = [
-            ("" if solution.within_limits else "!") + (str(k) if solved else "~") for k, solution in enumerate(shown, 1)
-        ]
-        columns = []
-        for i, revolute in enumerate(self.robot.revolute):
-            decimals = DECIMALS[self.units.angle if revolute else self.units.length]
-            # Rounded first, so that nothing is shown as -0.
-            cells = [f"{value:.{decimals}f}" for value in np.round([q[i] for q in joints], decimals) + 0.0]
-            columns.append((f"q{i + 1}", "right", cells))
-        # "shoulder right, elbow up" is a column for the shoulder and one for the elbow.
-        words = [_words(solution.branch) for solution in shown]
-        for kind in dict.fromkeys(kind for named in words for kind in named):
-            columns.append((kind, "left", [named.get(kind, "") for named in words]))
-        first = max(map(len, ["#", *labels]))
-        for group in _pages(columns, WIDTH - first):
-            table = narrow_table()
-            table.add_column("#", justify="right", style="cyan", no_wrap=True)
-            for name, side, _ in group:
-                table.add_column(name, justify=side, no_wrap=True)
-            for label, *cells in zip(labels, *(cells for _, _, cells in group), strict=True):
-                table.add_row(label, *cells)
-            yield table
+
+def motions_in_words(
+    result: Result,
+    free: Sequence[tuple[int, ...]],
+    idle: Sequence[int],
+    written: FamilyWords,
+    task: str,
+    redundant: bool,
+) -> Iterator[str]:
+    """The self-motions of an answer in words.
+
+    free: the joints of each solution that are free to move; idle: those that only move what the task leaves open;
+    redundant: whether the arm has more joints than the task needs.
+    """
+    together = [tuple(i for i in joints if i not in idle) for joints in free]
+    if any(len(joints) > len(rest) for joints, rest in zip(free, together, strict=True)):
+        yield f"free: {joint_names(idle)} may have any value; each posture is listed once"
+    for family in filter(is_within, result.families if result.solutions else ()):
+        yield from written.lines(family, result, task)
+    told = [set(family.joints) for family in result.families]
+    untold = {joints for joints in together if joints and not any(known.issuperset(joints) for known in told)}
+    if redundant and untold:
+        union = sorted({i for joints in untold for i in joints})
+        yield f"self-motion: {joints_can_move(union, task)}; well spread postures are listed"
+        return
+    for joints in sorted(untold):
+        yield f"self-motion: {joints_can_move(joints, task)}; one such posture is listed"
+
+
+def drawn_solutions(
+    shown: Sequence[Solution],
+    joints: Sequence[Sequence[float]],
+    solved: bool,
+    which: Sequence[tuple[int, bool]],
+    units: Units,
+) -> Iterator[Any]:
+    """Configurations, a row each; side by side in several tables where a page is too narrow for one.
+
+    joints: their values in the units; solved: whether they are solutions; which: the numbers, from 1, of the joints
+    that are shown, and whether each turns.
+    """
+    labels = [
+        ("" if solution.within_limits else "!") + (str(k) if solved else "~") for k, solution in enumerate(shown, 1)
+    ]
+    columns = []
+    for i, turns in which:
+        decimals = DECIMALS[units.angle if turns else units.length]
+        # Rounded first, so that nothing is shown as -0.
+        cells = [f"{value:.{decimals}f}" for value in np.round([q[i - 1] for q in joints], decimals) + 0.0]
+        columns.append((f"q{i}", "right", cells))
+    # "shoulder right, elbow up" is a column for the shoulder and one for the elbow.
+    words = [_words(solution.branch) for solution in shown]
+    for kind in dict.fromkeys(kind for named in words for kind in named):
+        columns.append((kind, "left", [named.get(kind, "") for named in words]))
+    first = max(map(len, ["#", *labels]))
+    for group in _pages(columns, WIDTH - first):
+        table = narrow_table()
+        table.add_column("#", justify="right", style="cyan", no_wrap=True)
+        for name, side, _ in group:
+            table.add_column(name, justify=side, no_wrap=True)
+        for label, *cells in zip(labels, *(cells for _, _, cells in group), strict=True):
+            table.add_row(label, *cells)
+        yield table
 
 
 def _pages(columns: Sequence[tuple[str, Any, list[str]]], room: int) -> Iterator[list[tuple[str, Any, list[str]]]]:
@@ -187,7 +215,7 @@ def _pages(columns: Sequence[tuple[str, Any, list[str]]], room: int) -> Iterator
     yield group
 
 
-def _wrapped(part: Any) -> Any:
+def filled(part: Any) -> Any:
     """A text in lines of a page; further lines of an indented one are indented more."""
     if not isinstance(part, str):
         return part

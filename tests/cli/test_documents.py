@@ -34,6 +34,7 @@ COMMANDS = [
     ["ik", "panda", "--pose", "Trans(400,0,400) RPY(180,0,0)", "--max", "3"],
     ["ik", "panda", "--pose", "Trans(400,0,400) RPY(180,0,0)", "--hold", "q7=20"],
     ["ik", "planar2r", "--xy", "5,5", "--explain"],
+    ["ik", "human-hand", "--target", "index=150,30,-60", "--target", "thumb=Trans(120,20,-50)"],
     ["ik", "puma560", "--xyz", "603.7329687947455,257.8443651077811,660.87284679477", "--rpy", "0,50,10"],
     ["workspace", "puma560", "--samples", "64", "--dextrous"], ["workspace", "planar2r", "--samples", "64"],
     ["workspace", "planar3r", "--samples", "64", "--dextrous", "--compare", "planar2r"],

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from inverse.random_trees import configurations, random_tree
 from sweeps import sweep
 
 import robokin
@@ -18,60 +19,13 @@ from robokin.spatial import rotation_from_axis_angle, rotation_from_rpy, transfo
 TASKS = ("pose", "approach", "position")
 
 
-def placed(rng):
-    """A constant transform with right angles and zeros among its numbers."""
-    angles = np.where(rng.random(3) < 0.5, rng.choice([0.0, np.pi / 2, -np.pi / 2], 3), rng.uniform(-3.0, 3.0, 3))
-    return transform(rotation_from_rpy(angles), np.where(rng.random(3) < 0.3, 0.0, rng.uniform(-0.3, 0.3, 3)))
-
-
-def random_tree(rng):
-    """A trunk with one to three branches; some joints slide, some advance as they turn, some follow or are added to."""
-    links, joints = ["base"], []
-
-    def grow(at, count, tag):
-        for i in range(count):
-            kind = rng.choice(["revolute", "prismatic", "helical"], p=[0.75, 0.15, 0.1])
-            low, high = np.sort(rng.uniform(-0.4, 0.4, 2) if kind == "prismatic" else rng.uniform(-3.0, 3.0, 2))
-            if rng.random() < 0.2:
-                low, high = -np.inf, np.inf
-            links.append(f"{tag}{i}")
-            before = placed(rng)
-            joint = GraphJoint(f"{tag}{i}", str(kind), at, len(links) - 1, before=before, limits=(low, high))
-            joints.append(replace(joint, pitch=0.05 if kind == "helical" else 0.0))
-            at = len(links) - 1
-        return at
-
-    trunk = grow(0, int(rng.integers(1, 3)), "trunk")
-    tips = [
-        Tip(f"tip{b}", grow(trunk, int(rng.integers(2, 5)), "abc"[b]), placed(rng)) for b in range(rng.integers(1, 4))
-    ]
-    couplings = []
-    for number, joint in enumerate(joints[1:], start=1):
-        if rng.random() < 0.3:
-            led = rng.choice(number, min(number, int(rng.integers(1, 3))), replace=False)
-            ratios = tuple((joints[i].name, float(rng.choice([1.0, -1.0, 2 / 3]))) for i in led)
-            couplings.append(Coupling(joint.name, ratios, 0.1, bool(rng.random() < 0.3)))
-    following = {one.joint for one in couplings}
-    joints = [replace(one, limits=(-np.inf, np.inf)) if one.name in following else one for one in joints]
-    return Tree("random", Graph(tuple(links), tuple(joints), tips=tuple(tips), couplings=tuple(couplings)))
-
-
 def tips_of(tree, tasks):
     graph = tree.graph
     parts = [graph.chain(graph.links[graph.root], name) for name in tree.tips]
-    return driven_tips(parts, tasks, tree.revolute, tree.limits), np.unique(
+    following = [one.joint for one in graph.couplings if not one.own]
+    return driven_tips(parts, tasks, tree.revolute, tree.limits, following), np.unique(
         [i for part in parts for i in part.variables]
     )
-
-
-def configurations(tree, count, rng):
-    """Within the limits, some joints at one, some at round values."""
-    reach = np.where(tree.revolute, np.pi, 0.3)
-    low, high = (np.where(np.isinf(tree.limits), reach[:, None] * [-1.0, 1.0], tree.limits)).T
-    q = rng.uniform(low, high, (count, tree.n))
-    kind = rng.random(q.shape)
-    q = np.where(kind < 0.1, low, np.where(kind < 0.2, high, q))
-    return np.where((kind > 0.8) & tree.revolute, np.clip(np.round(q / (np.pi / 2)) * (np.pi / 2), low, high), q)
 
 
 @pytest.mark.parametrize("seed", sweep(range(60), 5))
@@ -119,6 +73,10 @@ def test_a_target_is_answered_alone_as_among_others():
     for i in range(3):
         assert driven_search(tips, T[i : i + 1], home).reached.tolist() == together.reached[i : i + 1].tolist()
     assert driven_search(tips, T[:0], home).u.shape == (0, tips.n)
+    stands = tips.poses(home[None])
+    beside = driven_search(tips, np.concatenate([T, stands]), home)
+    assert beside.reached.all()
+    np.testing.assert_array_equal(beside.u[3], home)
 
 
 def test_values_that_hang_on_several_variables_keep_limits_of_their_own():
@@ -144,6 +102,11 @@ def test_values_that_hang_on_several_variables_keep_limits_of_their_own():
     found = driven_search(tips, T, np.zeros(2))
     assert not found.reached.any()
     assert found.place[0, 0] > 1e-3
+    # Of a joint that adds a variable of its own the limits are of that one, and those of its motion are told apart.
+    own = replace(graph, couplings=(Coupling("c", (("a", 1.0), ("b", 1.0)), own=True),))
+    assert not len(tips_of(Tree("sum", own), ["position"])[0].rows)
+    bounded = replace(own, joints=(*joints[:2], replace(joints[2], motion_limits=(-0.2, 0.3))))
+    np.testing.assert_array_equal(tips_of(Tree("sum", bounded), ["position"])[0].bounds, [[-0.2, 0.3]])
 
 
 def test_the_nearest_is_a_minimum_within_the_limits(rng):
@@ -157,6 +120,23 @@ def test_the_nearest_is_a_minimum_within_the_limits(rng):
     near = np.clip(found.u + 1e-3 * rng.normal(size=(200, tips.n)), *tips.limits.T)
     others = ended(tips, np.repeat(T, 200, axis=0), near)
     assert np.min(np.sum((others.place / tips.sizes) ** 2, axis=1)) >= off - 1e-9
+
+
+@pytest.mark.parametrize("far", [0.3, 40.0, 7e4])
+@pytest.mark.parametrize("bound", [np.inf, 1e6])
+def test_a_slide_goes_many_sizes(far, bound):
+    tilted = transform(rotation_from_rpy([1.2, 0.0, 0.0]), np.zeros(3))
+    joints = (
+        GraphJoint("rail", "prismatic", 0, 1, after=transform(np.eye(3), [1.0, 0.0, 0.0]), limits=(-bound, bound)),
+        GraphJoint("b", "revolute", 1, 2, before=tilted, after=transform(np.eye(3), [1.0, 0.0, 0.0])),
+        GraphJoint("c", "revolute", 1, 3, after=transform(np.eye(3), [0.0, 1.0, 0.0])),
+    )
+    tree = Tree("rail", Graph(("base", "1", "2", "3"), joints, tips=(Tip("p", 2), Tip("q", 3))))
+    tips, _ = tips_of(tree, ["pose", "position"])
+    u = np.array([[far, 1.0, -2.0]])
+    found = driven_search(tips, tips.poses(u), np.zeros(3))
+    assert found.reached.all()
+    np.testing.assert_allclose(found.u, u, rtol=1e-9, atol=1e-9)
 
 
 def test_opposite_axes_are_turned_by_half_a_turn():

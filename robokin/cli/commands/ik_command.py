@@ -30,6 +30,14 @@ def command(
     robot: RobotArgument,
     *,
     target: TargetOptions,
+    tips: Annotated[
+        list[str] | None,
+        option(
+            "--target",
+            "TIP=X,Y,Z|EXPR",
+            "Of a tree with several tips: the position or the pose of one of them; repeatable.",
+        ),
+    ] = None,
     input: Annotated[
         str | None,
         option(
@@ -98,6 +106,9 @@ def command(
     configuration that comes nearest. A CSV has a row for each solution, which robokin fk reads; a target without
     one has a row with solution 0, which robokin fk leaves out.
 
+    With --target several tips of a tree have targets at once: those that share no joints each with all
+    solutions, others together with one.
+
     Examples:
         robokin ik puma560 --pose "Trans(-149.09,921.12,20.32) RPY(0,90,90)"
         robokin ik puma560 --xyz 500,100,300 --rpy 180,0,45 --near home --max 1
@@ -107,6 +118,7 @@ def command(
         robokin ik panda --xyz 400,100,400 --rpy 180,0,0 --hold q3=20
         robokin ik ur5e --xyz 400,200,300 --rpy 180,0,0 --turns
         robokin ik scorbot --xyz 300,40,200 --rpy 0,170,8 --tol-angle 1
+        robokin ik human-hand --target index=150,30,-60 --target thumb=100,23,-68
         robokin fk puma560 -i joints.csv -f csv | robokin ik puma560 -i - -f csv
     """
     from itertools import chain
@@ -121,6 +133,18 @@ def command(
     from robokin.tables.carried import Carried
     from robokin.tables.target_rows import Targets
 
+    if tips:
+        from robokin.cli.tip_target_options import answer_tips, refuse_beside
+
+        refuse_beside(
+            {
+                **target.texts, "--input": input, "--tip": description.tip, "--root": description.root,
+                "--method": method, "--turns": turns, "--hold": hold or None, "--tol-position": tol_position,
+                "--tol-angle": tol_angle, "--explain": explain, "--as": as_, "--drop": drop, "--cores": cores,
+            }
+        )  # fmt: skip
+        asked_for = {"limits": not no_limits, "most": _count(max_, "--max", 1), "seed": _count(seed, "--seed", 0) or 0}
+        return answer_tips(robot, tips, near=near, output=output, description=description, arguments=asked_for)
     kind = output.kind
     used = cores_worth(whole_cores(cores), input, SOME)
     model, units = description.moving_robot(robot)

@@ -169,18 +169,17 @@ def newton_within(chain: Chain, T: Array, q: Array, size: float, limits: Array, 
         return error_and_jacobian(chain, T[rows], x * scale, size)
 
     def step(rows: Index, x: Array, e: Array, J: Array) -> Array:
-        return step_within(x, e, J, low, high, LONGEST)
+        return limited(step_within(x, e, J, low, high, CAUTION * np.sum(e * e, axis=1)), LONGEST)
 
     x, error = brought_down(errors, step, q / scale, low, high, steps=steps, arrived=DONE**2)
     return x * scale, error
 
 
-def step_within(x: Array, e: Array, J: Array, low: Array, high: Array, longest: float) -> Array:
+def step_within(x: Array, e: Array, J: Array, low: Array, high: Array, damping: Array) -> Array:
     """The damped step (s, n) of the joints that it does not push outwards from their limits, by singular values.
 
-    x: (s, n) within low and high (n,), e: (s, m) the errors there, J: (s, m, n); longest: of a joint's step.
+    x: (s, n) within low and high (n,), e: (s, m) the errors there, J: (s, m, n); damping: (s,).
     """
-    damping = CAUTION * np.sum(e * e, axis=1)
     held = held_at(x, low, high, np.einsum("sij,si->sj", J, e))
     dx = np.zeros(x.shape)
     for _ in range(3):
@@ -189,7 +188,7 @@ def step_within(x: Array, e: Array, J: Array, low: Array, high: Array, longest: 
         if not outwards.any():
             break
         held |= outwards
-    return limited(np.where(held, 0.0, dx), longest)
+    return np.where(held, 0.0, dx)
 
 
 def _of(more: MoreStarts | None, some: Index) -> MoreStarts | None:

@@ -18,10 +18,10 @@ from typing import NamedTuple
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
-from robokin.inverse.numeric.closing import DONE, step_within
+from robokin.inverse.numeric.closing import CAUTION, DONE, step_within
 from robokin.inverse.numeric.driven_tips import DrivenTips, errors_and_slopes, tip_errors
 from robokin.inverse.numeric.initial_guesses import between
-from robokin.kernel.damped_newton import brought_down, held_at, limited, singular_step
+from robokin.kernel.damped_newton import brought_down, held_at, singular_step
 
 DRAWN = 2048
 """Configurations drawn for each round of starts."""
@@ -40,7 +40,7 @@ STEPS = 60
 """Steps of a descent at most."""
 
 LONGEST = 0.6
-"""Longest step of a variable [rad | size] on the way."""
+"""The most that a joint turns in a step [rad]."""
 
 MOST_TURNS = 4.0
 """How many turns an angle without limits is drawn from at most: joints that follow it at a part of its speed come back
@@ -91,10 +91,27 @@ def driven_ends(tips: DrivenTips, T: Array, u: Array, steps: int = STEPS) -> Dri
         return errors_and_slopes(tips, T[rows], x * tips.scale)
 
     def step(rows: Index, x: Array, e: Array, J: Array) -> Array:
-        return step_within(x, e, J, low, high, LONGEST)
+        damping = np.minimum(CAUTION * np.sum(e * e, axis=1), 1.0)
+        return _limited_turns(tips, step_within(x, e, J, low, high, damping))
 
     x, _ = brought_down(errors, step, u / tips.scale, low, high, steps=steps, arrived=DONE**2)
     return ended(tips, T, _on_limits(x * tips.scale, tips.limits))
+
+
+def _limited_turns(tips: DrivenTips, dx: Array) -> Array:
+    """Steps (s, n) shortened so that no joint turns by more than LONGEST; what only slides goes as far as it likes.
+
+    A slide's way is straight, and a target may be many sizes away along it.
+    """
+    rates = _turning_rates(tips) * tips.scale
+    most = np.max(np.abs(dx) * rates, axis=1, keepdims=True)
+    return np.where(rates > 0.0, dx * (LONGEST / np.maximum(most, LONGEST)), dx)
+
+
+def _turning_rates(tips: DrivenTips) -> Array:
+    """(n,) by how much the joint that turns most turns with each variable [rad]."""
+    turning = np.concatenate([S[chain.revolute] for S, chain in zip(tips.maps, tips.chains, strict=True)])
+    return np.asarray(np.max(np.abs(turning), axis=0, initial=0.0))
 
 
 def _on_limits(u: Array, limits: Array) -> Array:
@@ -139,7 +156,7 @@ def _searched(tips: DrivenTips, T: Array, first: Array, seed: int) -> DrivenEnds
             break
         u = chosen_starts(tips, T[missing], len(ROUNDS) * seed + number, STARTS * factor)
         if number == 0:
-            u = np.concatenate([np.tile(first, (m, 1, 1)), u], axis=1)
+            u = np.concatenate([np.tile(first, (len(missing), 1, 1)), u], axis=1)
         ends = driven_ends(tips, np.repeat(T[missing], u.shape[1], axis=0), u.reshape(-1, n))
         place = _best_of_each(tips, ends, len(missing), first[0])
         _put(best, missing, ends, place[:, 0])
@@ -205,7 +222,7 @@ def brought_nearest(tips: DrivenTips, T: Array, u: Array) -> DrivenEnds:
     for _ in range(NEAREST_STEPS):
         held = held_at(x, low, high, np.einsum("sij,si->sj", J, e))
         dx = singular_step(np.where(held[:, None], 0.0, J), e, damping * np.minimum(off, 1.0))
-        there = np.clip(x + limited(np.where(held, 0.0, dx), LONGEST), low, high)
+        there = np.clip(x + _limited_turns(tips, np.where(held, 0.0, dx)), low, high)
         e_there, J_there = errors_and_slopes(tips, T, there * tips.scale)
         off_there = np.sum(e_there * e_there, axis=1)
         better = off_there < off

@@ -12,7 +12,7 @@ Degenerate case. Two z axes that are opposite have no shortest turn: one about a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -90,11 +90,17 @@ class DrivenTips(Brief):
         return np.asarray(v - np.clip(v, self.bounds[:, 0], self.bounds[:, 1]))
 
 
-def driven_tips(parts: Sequence[SerialChain], tasks: Sequence[Task], turns: Flags, limits: Array) -> DrivenTips:
+def driven_tips(
+    parts: Sequence[SerialChain],
+    tasks: Sequence[Task],
+    turns: Flags,
+    limits: Array,
+    following: Collection[str] = (),
+) -> DrivenTips:
     """The tips at the ends of chains (k) of one graph; variables are those that move one of them, in their order.
 
-    turns: (n,), limits: (n, 2) [rad | m] of all variables of the graph. Joints that hang on several variables keep
-    the limits of their own.
+    turns: (n,), limits: (n, 2) [rad | m] of all variables of the graph; following: the names of the joints without a
+    variable of their own. Joints that hang on several variables keep the limits of their motion.
     """
     variables = driving(parts)
     chains, maps = [], []
@@ -108,8 +114,11 @@ def driven_tips(parts: Sequence[SerialChain], tasks: Sequence[Task], turns: Flag
         )
         maps.append(S)
         for joint, row, offset in zip(part.joints, S, part.offsets, strict=True):
-            if np.count_nonzero(row) > 1 and joint.name not in rows and np.isfinite(joint.limits).any():
-                rows[joint.name] = row, offset - joint.zero, joint.limits
+            low, high = joint.motion_limits
+            if joint.name in following:  # its limits are those of its motion, too
+                low, high = max(low, joint.limits[0]), min(high, joint.limits[1])
+            if np.count_nonzero(row) > 1 and joint.name not in rows and np.isfinite([low, high]).any():
+                rows[joint.name] = row, offset - joint.zero, (low, high)
     return DrivenTips(
         tuple(chains),
         tuple(maps),
