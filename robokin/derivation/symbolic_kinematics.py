@@ -14,7 +14,7 @@ from robokin.derivation.angle_sums import Function
 from robokin.derivation.symbol_names import Names, quarters_of
 from robokin.derivation.symbol_sums import ONE, ZERO, negative, symbols_of
 from robokin.derivation.symbolic_product import EXACT, Element, Matrix, SymbolicShift, Tilt, Turn, Vector, product, tilt
-from robokin.model import Joint, JointType, Robot
+from robokin.model import Joint, JointType, Robot, expect_uncoupled
 from robokin.spatial import z_to
 from robokin.spatial.rotations import cos_sin
 from robokin.units import Units
@@ -44,7 +44,7 @@ def symbolic_kinematics(
 
     `numbers` writes lengths and twists as numbers; `frames` adds the frame after each row, in the world.
     """
-    names = Names(robot, units or robot.units, numbers)
+    names = Names(expect_uncoupled(robot), units or robot.units, numbers)
     parts: dict[str, list[Element]] = {}
     if not np.array_equal(robot.base, np.eye(4)):
         parts["base"] = _pose(robot.base, _texts(robot.texts, "base "), "0", -1, names)

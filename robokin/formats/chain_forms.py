@@ -11,10 +11,24 @@ from robokin.formats.chain_parts import ChainParts
 from robokin.formats.faults import Faults
 from robokin.formats.joint_table import rows_of
 from robokin.formats.node_values import Context, choice_of
-from robokin.formats.schema import CONVENTIONS, ETS, OPW, OTHER_FORMS, ROBOT, SCREWS, Fields
+from robokin.formats.schema import (
+    BRANCH,
+    BRANCH_ETS,
+    BRANCH_OPW,
+    BRANCH_SCREWS,
+    CONVENTIONS,
+    ETS,
+    OPW,
+    OTHER_FORMS,
+    ROBOT,
+    SCREWS,
+    Fields,
+)  # fmt: skip
 from robokin.formats.yaml_tree import Mapping, Node, Scalar
 
 FORMS: dict[str, Fields] = {"table": ROBOT, "screws": SCREWS, "ets": ETS, "opw": OPW}
+BRANCH_FORMS: dict[str, Fields] = {"table": BRANCH, "screws": BRANCH_SCREWS, "ets": BRANCH_ETS, "opw": BRANCH_OPW}
+"""What the description of a robot, and a branch of a tree, may hold in each form."""
 
 NAMED = {
     "table": "a table of joints",
@@ -25,12 +39,12 @@ NAMED = {
 """The forms as a message says them."""
 
 
-def form_of(root: Mapping) -> str:
-    """The form that a description is meant in, one of `FORMS`, by its keys and its convention."""
+def form_of(root: Mapping, stated: str = "") -> str:
+    """The form that a chain is meant in, one of `FORMS`, by its keys and its convention, by default the stated one."""
     if "ets" in root.entries:
         return "ets"
     node = root.entries.get("convention")
-    convention = node.text.strip() if isinstance(node, Scalar) else ""
+    convention = node.text.strip() if isinstance(node, Scalar) else "" if node is not None else stated
     if convention in OTHER_FORMS:
         return convention
     if node is not None and convention not in CONVENTIONS:  # a slip of the key
@@ -38,12 +52,14 @@ def form_of(root: Mapping) -> str:
     return "table"
 
 
-def without_other_keys(root: Mapping, form: str, faults: Faults) -> Mapping:
+def without_other_keys(
+    root: Mapping, form: str, faults: Faults, forms: MappingType[str, Fields] = FORMS
+) -> Mapping:  # fmt: skip
     """A description without the keys that belong to other forms than its own: these are mistakes."""
-    known = FORMS[form]
+    known = forms[form]
     keys, entries = dict(root.keys), dict(root.entries)
     for name, mark in root.keys.items():
-        owners = [NAMED[other] for other, fields in FORMS.items() if name in fields]
+        owners = [NAMED[other] for other, fields in forms.items() if name in fields]
         if name not in known and owners:
             del keys[name], entries[name]
             said = f"'{name}' beside {NAMED[form]}" if form != "table" else f"'{name}' in {NAMED[form]}"
@@ -52,13 +68,13 @@ def without_other_keys(root: Mapping, form: str, faults: Faults) -> Mapping:
     return Mapping(entries, root.mark, keys)
 
 
-def read_chain(fields: MappingType[str, Node], context: Context) -> ChainParts:
-    """The chain that the fields of a robot describe; mistakes are gathered.
+def read_chain(fields: MappingType[str, Node], context: Context, stated: str = "standard") -> ChainParts:
+    """The chain that the fields of a robot or a branch describe; mistakes are gathered.
 
-    Raises DescriptionError where nothing of it can be read.
+    stated: the convention of a table that says none. Raises DescriptionError where nothing of it can be read.
     """
     attempt = context.faults.attempt
-    convention: str | None = "standard"
+    convention: str | None = stated
     if "convention" in fields:
         known = (*CONVENTIONS, *OTHER_FORMS)
         convention = attempt(None, choice_of, fields["convention"], known, "the convention")

@@ -34,7 +34,7 @@ def _coupling(node: Node, joints: tuple[GraphJoint, ...], context: Context) -> C
     if isinstance(others, Mapping):
         if "ratio" in fields:
             raise fields["ratio"].mark.error("found 'ratio' beside a mapping of joints to ratios, expected one of them")
-        pairs = [(Scalar(name, others.keys[name]), value) for name, value in others.entries.items()]
+        pairs = [(Scalar(name, others.keys[name], quoted=True), value) for name, value in others.entries.items()]
         if not pairs:
             raise others.mark.error("found no joints in a coupling, expected a mapping of joints to ratios")
     ratios = []

@@ -78,21 +78,8 @@ def row_of(cells: MappingType[str, Node], place: RowPlace, convention: str, cont
     if variable in cells:
         shift = attempt(shift, _shift, cells, variable, name, place, context)
         del cells[variable]
-    if kind is JointType.FIXED and convention == "screws":
-        context.faults.add(
-            cells["type"].mark.error(
-                f"found a fixed row (row {place.row}) of screws, expected revolute or prismatic: what does not move is "
-                "in 'home'"
-            )
-        )
-    elif kind is JointType.FIXED:
-        for cell in ("offset", "limits", "sense", "motion_limits", "pitch"):
-            if cell in cells:
-                context.faults.add(
-                    cells.pop(cell).mark.error(
-                        f"found '{cell}' on a fixed row (row {place.row}), expected none: it has no variable"
-                    )
-                )
+    if kind is JointType.FIXED:
+        _without_variable(cells, place, convention, context)
     turns = kind is JointType.REVOLUTE
 
     def number(cell: str, angle: bool) -> float:
@@ -124,6 +111,25 @@ def row_of(cells: MappingType[str, Node], place: RowPlace, convention: str, cont
         pitch=pitch,
         motion_limits=motion_limits,
     )
+
+
+def _without_variable(cells: dict[str, Node], place: RowPlace, convention: str, context: Context) -> None:
+    """Gather the mistakes of a fixed row, and take out the cells that only a joint has."""
+    if convention == "screws":
+        context.faults.add(
+            cells["type"].mark.error(
+                f"found a fixed row (row {place.row}) of screws, expected revolute or prismatic: what does not move is "
+                "in 'home'"
+            )
+        )
+        return
+    for cell in ("offset", "limits", "sense", "motion_limits", "pitch"):
+        if cell in cells:
+            context.faults.add(
+                cells.pop(cell).mark.error(
+                    f"found '{cell}' on a fixed row (row {place.row}), expected none: it has no variable"
+                )
+            )
 
 
 def _pitch(cells: MappingType[str, Node], where: str, context: Context) -> float:

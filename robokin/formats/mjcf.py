@@ -17,7 +17,7 @@ from robokin.formats.faults import Faults
 from robokin.formats.mjcf_bodies import MjcfBodies
 from robokin.formats.mjcf_settings import MjcfClasses, MjcfPoses, compiler_of
 from robokin.formats.mjcf_tree import MjcfTree
-from robokin.formats.rounded_angles import RoundedAngles
+from robokin.formats.snapped_angles import RoundedAngles
 from robokin.formats.xml_tree import MAX_DEPTH, MAX_XML_BYTES, XmlNode, XmlText, read_xml
 from robokin.model.tree import Tree
 
@@ -90,7 +90,7 @@ def _read(root: XmlNode, exact: bool, id: str, balls: bool, faults: Faults) -> T
         raise (root.first("equality") or root).error(str(error)) from None
     poses = maker.poses(graph, (key for key in _inside(root, "keyframe") if key.tag == "key"), bodies.values)
     name = root.attributes.get("model", "").strip() or id or "robot"
-    notes = (*bodies.notes, *maker.notes, *rounded.notes())
+    notes = (*root.document.notes, *bodies.notes, *maker.notes, *rounded.notes())
     return Tree(name, graph, id=id, poses=poses, notes=notes)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import did_you_mean, or_list, shown
-from robokin.formats.rounded_angles import RoundedAngles
+from robokin.formats.snapped_angles import RoundedAngles
 from robokin.formats.xml_numbers import numbers_at
 from robokin.formats.xml_tree import XmlNode
 from robokin.spatial import rotation_from_axis_angle, rotation_from_quaternion, transform, z_to

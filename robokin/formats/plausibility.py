@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable
 from robokin.errors import Note
 from robokin.formats.node_values import Context, Number
 from robokin.formats.written_numbers import decimals, is_part_of_pi, is_whole_degrees, whole
-from robokin.model import Mechanism, Robot, WheeledBase
+from robokin.model import CoupledRobot, Mechanism, Robot, WheeledBase
 
 FARTHEST = 100.0
 """Reach [m] that no arm has; gantries have some tens."""
@@ -176,7 +176,8 @@ def _reach(robot: Robot, lengths: list[Number]) -> float:
     from robokin.kinematics.forward import forward_kinematics
 
     tip = (forward_kinematics(robot, np.zeros(robot.n)) - robot.base)[:3, 3]
-    return min(max(chain_size(chain_of(robot)), float(np.linalg.norm(tip))), made) + slides
+    arm = robot.free_motion if isinstance(robot, CoupledRobot) else robot
+    return min(max(chain_size(chain_of(arm)), float(np.linalg.norm(tip))), made) + slides
 
 
 def _outliers(context: Context, lengths: list[Number]) -> Note | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from robokin.units import METRES, RADIANS
@@ -129,21 +129,36 @@ FRAME_ROW: Fields = {
 
 TREE: Fields = {
     **COMMON,
-    "convention": Field("text", "of every branch that states none; default standard", choices=CONVENTIONS),
+    "convention": Field(
+        "text", "of every branch that states none; default standard", choices=(*CONVENTIONS, *OTHER_FORMS)
+    ),
     "base": Field("transform", "fixed transform from the world to the base"),
     "branches": Field("branches", "the branches by name, each a serial chain", required=True),
     "couplings": Field("couplings", "joints whose values hang on those of others"),
     "tips": Field("tips", "the frames that are asked for; default every branch on which nothing stands"),
     "poses": Field("poses", "named configurations, usable as --q NAME"),
-}
+}  # fmt: skip
+
+ON_BRANCH = Field("text", "the branch, or the joint (branch.joint), at whose end it stands; default the base")
 
 BRANCH: Fields = {
-    "on": Field("text", "the branch, or the joint (branch.joint), at whose end it stands; default the base"),
+    "on": ON_BRANCH,
     "convention": Field("text", "default that of the file", choices=CONVENTIONS),
     "base": Field("transform", "fixed transform from there to its frame 0"),
-    "joints": Field("rows", "the table: a list of rows, or one list for each column", required=True),
+    "joints": ROBOT["joints"],
     "tool": Field("transform", "fixed transform from its last frame to its end"),
 }
+
+
+def _as_branch(robot: Fields) -> Fields:
+    """The fields of a branch whose chain is written as that of a robot."""
+    own = {name: field for name, field in robot.items() if name not in (*COMMON, "convention", "poses")}
+    told: Fields = {"convention": replace(robot["convention"], required=False)} if "convention" in robot else {}
+    ends: Fields = {name: BRANCH[name] for name in ("base", "tool") if name in own}
+    return {"on": ON_BRANCH, **told, **own, **ends}
+
+
+BRANCH_SCREWS, BRANCH_ETS, BRANCH_OPW = _as_branch(SCREWS), _as_branch(ETS), _as_branch(OPW)
 
 COUPLING: Fields = {
     "joint": Field("text", "the joint whose value hangs on others'", required=True),
@@ -281,7 +296,12 @@ def json_schema() -> dict[str, Any]:
         "units": _object(UNITS),
         "parameters": {"type": ["object", "null"], "additionalProperties": {"$ref": "#/$defs/number"}},
         "poses": {"type": "object", "additionalProperties": numbers},
-        "branches": {"type": "object", "additionalProperties": _object(BRANCH)},
+        "branches": {
+            "type": "object",
+            "additionalProperties": {
+                "anyOf": [_object(fields) for fields in (BRANCH, BRANCH_SCREWS, BRANCH_ETS, BRANCH_OPW)]
+            },
+        },
         "coupled": {"anyOf": [text, {"type": "object", "additionalProperties": {"$ref": "#/$defs/number"}}]},
         "couplings": {"type": "array", "items": _object(COUPLING)},
         "tips": {"type": "array", "items": {"anyOf": [text, _object(TIP)]}, "minItems": 1},

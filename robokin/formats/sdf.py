@@ -16,9 +16,9 @@ import numpy as np
 from robokin.errors import DescriptionError, InputError, Note, counted, did_you_mean, shown
 from robokin.files import open_path, read_up_to
 from robokin.formats.faults import Faults
-from robokin.formats.rounded_angles import RoundedAngles
 from robokin.formats.sdf_frames import NESTED, SdfFrame
 from robokin.formats.sdf_models import SdfAxis, SdfJoint, SdfModel
+from robokin.formats.snapped_angles import RoundedAngles
 from robokin.formats.taken_names import TakenNames
 from robokin.formats.xml_numbers import number_at
 from robokin.formats.xml_tree import MAX_XML_BYTES, XmlNode, read_xml
@@ -57,7 +57,7 @@ def read_sdf(
     faults = Faults()
     try:
         version = _version(root)
-        notes: list[Note] = []
+        notes: list[Note] = [*root.document.notes]
         rounded = RoundedAngles(exact)
         model = SdfModel(_chosen_model(root, notes), version, rounded, faults)
         maker = _SdfGraph(model, faults, balls)

@@ -14,7 +14,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import did_you_mean, shown
-from robokin.formats.rounded_angles import RoundedAngles
+from robokin.formats.snapped_angles import RoundedAngles
 from robokin.formats.xml_numbers import numbers_at
 from robokin.formats.xml_tree import XmlNode
 from robokin.spatial import invert, rotation_from_quaternion, rotation_from_rpy, transform

@@ -13,8 +13,8 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.errors import did_you_mean, or_list, shown
 from robokin.formats.faults import Faults
-from robokin.formats.rounded_angles import RoundedAngles
 from robokin.formats.sdf_frames import MODEL, NESTED, SDF_WORLD, SdfFrame, SdfPlaces, SdfScope, pose_in
+from robokin.formats.snapped_angles import RoundedAngles
 from robokin.formats.xml_numbers import number_at, numbers_at
 from robokin.formats.xml_tree import XmlNode
 from robokin.spatial import invert

@@ -9,9 +9,9 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import InputError, did_you_mean, shown
+from robokin.formats.chain_forms import BRANCH_FORMS, form_of, read_chain, without_other_keys
 from robokin.formats.couplings import couplings_of
 from robokin.formats.description_head import Head
-from robokin.formats.joint_table import rows_of
 from robokin.formats.node_values import (
     Context,
     choice_of,
@@ -21,7 +21,7 @@ from robokin.formats.node_values import (
     transform_of,
 )
 from robokin.formats.robot_fields import poses_of
-from robokin.formats.schema import BRANCH, CONVENTIONS, MAX_ROWS, TIP
+from robokin.formats.schema import CONVENTIONS, MAX_ROWS, OTHER_FORMS, TIP
 from robokin.formats.yaml_tree import Mapping, Node, describe
 from robokin.model import Joint, JointType, Tree
 from robokin.model.graph import Graph, GraphJoint, Tip
@@ -55,7 +55,8 @@ def read_tree_fields(head: Head) -> Tree:
     attempt = context.faults.attempt
     convention = "standard"
     if "convention" in fields:
-        convention = attempt(convention, choice_of, fields["convention"], CONVENTIONS, "the convention")
+        known = (*CONVENTIONS, *OTHER_FORMS)
+        convention = attempt(convention, choice_of, fields["convention"], known, "the convention")
     branches = attempt({}, _branches, fields["branches"], convention, context)
     base = attempt(np.eye(4), transform_of, fields["base"], context, "base") if "base" in fields else np.eye(4)
     context.faults.stop()
@@ -96,18 +97,24 @@ def _branches(node: Node, convention: str, context: Context) -> dict[str, _Branc
 
 
 def _branch(name: str, node: Node, convention: str, context: Context) -> _Branch | None:
-    fields = fields_of(node, BRANCH, f"the branch {shown(name)}", context.faults)
+    """One branch, its chain in any of the forms that a robot's has; None where it is wrong."""
+    form = "table"
+    if isinstance(node, Mapping):
+        form = form_of(node, convention)
+        node = without_other_keys(node, form, context.faults, BRANCH_FORMS)
+    fields = fields_of(node, BRANCH_FORMS[form], f"the branch {shown(name)}", context.faults)
     attempt = context.faults.attempt
-    if "convention" in fields:
-        convention = attempt(convention, choice_of, fields["convention"], CONVENTIONS, "the convention")
-    rows, _ = rows_of(fields["joints"], convention, context)
+    chain = read_chain(fields, context, convention if convention in CONVENTIONS else "standard")
     base, tool = (
         attempt(np.eye(4), transform_of, fields[key], context, f"{key} of {name}") if key in fields else np.eye(4)
         for key in ("base", "tool")
     )
     on = attempt("", text_of, fields["on"], "the name of a branch") if "on" in fields else ""
     on = "" if on == WORLD else on
-    return None if rows is None else _Branch(name, on, base, tool, rows, convention, fields.get("on", node))
+    if chain.rows is None or chain.convention is None:
+        return None
+    tool = tool if np.array_equal(chain.tail, np.eye(4)) else chain.tail @ tool
+    return _Branch(name, on, base, tool, chain.rows, chain.convention, fields.get("on", node))
 
 
 def _ends(branches: dict[str, _Branch]) -> dict[str, tuple[str, Array]]:

@@ -10,16 +10,16 @@ Source: ROS wiki, urdf/XML/joint, and urdfdom's joint.cpp, whose defaults these 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from robokin.errors import DescriptionError, InputError, counted, did_you_mean, shown, visible
 from robokin.formats.faults import Faults
+from robokin.formats.snapped_angles import MOST_NAMED, listed_joints
 from robokin.formats.tool_names import default_tips
 from robokin.formats.urdf_joints import (
     FREE,
-    MOST_NAMED,
     UrdfJoint,
     UrdfReading,
-    listed_names,
     mimic_factors,
     name_of,
     read_joint,
@@ -63,7 +63,8 @@ def tree_of_urdf(
         for one in whole.errors:
             files[one.file].with_line(one)
         raise whole from None
-    return tree
+    said = [note for text in files.values() for note in text.notes]
+    return replace(tree, notes=(*said, *tree.notes)) if said else tree
 
 
 def _read_robot(root: XmlNode, reading: UrdfReading, id: str, least_joints: int) -> Tree:
@@ -208,7 +209,7 @@ def _from_root(
     roots = [name for name in links if name not in below]
     if len(roots) > 1:
         raise links[roots[1]].error(
-            f"found {len(roots)} links without a parent, {listed_names(roots)}, expected one root: a joint leads to "
+            f"found {len(roots)} links without a parent, {listed_joints(roots)}, expected one root: a joint leads to "
             "every other link"
         )
     reached = set(roots)

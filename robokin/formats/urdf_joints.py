@@ -5,22 +5,20 @@ Source: ROS wiki, urdf/XML/joint, and urdfdom's joint.cpp, whose defaults these 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import Note, did_you_mean, shown
 from robokin.formats.faults import Faults
-from robokin.formats.snapped_angles import snapped_angle
+from robokin.formats.snapped_angles import RoundedAngles, listed_joints
 from robokin.formats.xml_numbers import number_of, numbers_of
 from robokin.formats.xml_tree import XmlNode
 from robokin.spatial import rotation_from_rpy, transform
 from robokin.spatial.transforms import FARTHEST
-
-MOST_NAMED = 12
-"""Names that a message lists."""
 
 KINDS = {
     "revolute": "revolute",
@@ -34,6 +32,10 @@ KINDS = {
 
 FREE = {"floating": 6, "planar": 3}
 """The freedoms of joints that are more than one."""
+
+
+SNAP_SAID = 1e-9
+"""An angle [rad] that is moved by less than this is moved without a note."""
 
 
 @dataclass(eq=False)
@@ -62,10 +64,14 @@ class UrdfReading:
     exact: bool
     faults: Faults = field(default_factory=Faults)
     notes: list[Note] = field(default_factory=list)
-    snapped: list[tuple[str, XmlNode]] = field(default_factory=list)
     unlimited: list[tuple[str, XmlNode]] = field(default_factory=list)
     halved: list[tuple[str, XmlNode]] = field(default_factory=list)
     turning: list[tuple[str, XmlNode]] = field(default_factory=list)
+
+    @cached_property
+    def rounded(self) -> RoundedAngles:
+        """The angles that are taken as what was meant."""
+        return RoundedAngles(self.exact, SNAP_SAID)
 
     def note(self, node: XmlNode, message: str) -> None:
         """Keep a note at a node."""
@@ -74,15 +80,14 @@ class UrdfReading:
 
     def gathered(self) -> tuple[Note, ...]:
         """All notes, one for each kind of thing that happened at several joints."""
-        for found, start, end in (
-            (self.snapped, "angles cut in print are taken as multiples of 15° in", "(--exact takes them as written)"),
-            (self.unlimited, "no limits are given, and none are taken, for", ""),
-            (self.halved, "one limit is missing, and is taken as 0 as URDF has it, for", ""),
-            (self.turning, "limits are ignored, as the joint is continuous, for", ""),
+        self.notes += self.rounded.notes()
+        for found, start in (
+            (self.unlimited, "no limits are given, and none are taken, for"),
+            (self.halved, "one limit is missing, and is taken as 0 as URDF has it, for"),
+            (self.turning, "limits are ignored, as the joint is continuous, for"),
         ):
             if found:
-                names = listed_names([name for name, _ in dict(found).items()])
-                self.note(found[0][1], f"{start} {names} {end}".strip())
+                self.note(found[0][1], f"{start} {listed_joints([*dict(found)])}")
         return tuple(sorted(self.notes, key=lambda note: (note.line, note.column)))
 
 
@@ -155,17 +160,9 @@ def _read_origin(node: XmlNode, joint: str, reading: UrdfReading) -> Array:
         xyz = _vector(origin, "xyz", reading)
     if origin is not None and "rpy" in origin.attributes:
         rpy = _vector(origin, "rpy", reading)
-        if not reading.exact:
-            words = origin.attributes["rpy"].replace(",", " ").split()
-            meant = tuple(map(snapped_angle, rpy, words))
-            if max(abs(a - b) for a, b in zip(meant, rpy, strict=True)) > SNAP_SAID:
-                reading.snapped.append((joint, origin))
-            rpy = meant
+        words = origin.attributes["rpy"].replace(",", " ").split()
+        rpy = tuple(reading.rounded.meant(a, word, origin.mark, joint) for a, word in zip(rpy, words, strict=False))
     return transform(rotation_from_rpy(rpy), xyz)
-
-
-SNAP_SAID = 1e-9
-"""An angle [rad] that is moved by less than this is moved without a note."""
 
 
 def _read_axis(node: XmlNode, joint: str, reading: UrdfReading) -> Array:
@@ -211,9 +208,3 @@ def mimic_factors(mimic: XmlNode) -> tuple[float, float]:
         if abs(value) > FARTHEST:
             raise mimic.error(f"found the {name} {value:g}, expected one up to {FARTHEST:g}", name)
     return values
-
-
-def listed_names(names: Sequence[str]) -> str:
-    """Names in a line."""
-    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-    return ", ".join(shown(name) for name in names[:MOST_NAMED]) + more

@@ -15,7 +15,7 @@ from functools import cached_property
 from xml.parsers import expat
 from xml.parsers.expat import errors as expat_errors
 
-from robokin.errors import DescriptionError, shown
+from robokin.errors import DescriptionError, Note, shown
 from robokin.formats.excerpts import excerpt
 from robokin.formats.yaml_tree import FilePlace
 
@@ -32,20 +32,27 @@ ENCODINGS = {"utf-8": "utf-8", "ascii": "utf-8", "utf-16": "utf-8", "iso8859-1":
 """What a text that declares an encoding is read by, by Python's name of what it declares: ASCII is a part of UTF-8,
 and what declares UTF-16 in so many bytes is none."""
 
-DECLARED = re.compile(rb"""\s*<\?xml[^>]*?\bencoding\s*=\s*["']([\w.:-]+)["']""")
+DECLARATION = re.compile(r"<\?xml(?=\s)[^>]*?\?>")
+DECLARED = re.compile(r"""\bencoding\s*=\s*["']([\w.:-]+)["']""", re.ASCII)
+BEFORE_DECLARATION = 1 << 16
+"""Bytes in which the declaration of an encoding is sought: it may stand behind the comment of a licence."""
 ATTRIBUTE = re.compile(r"""\s*([^\s=>/"']+)\s*=\s*("[^"]*"|'[^']*')""")
 LINE_END = re.compile("\r\n|\r|\n")
 
 
 @dataclass(eq=False)
 class XmlText:
-    """A text as it was parsed: `data` in UTF-8, from a line and a column (both from 0) on."""
+    """A text as it was parsed: `data` in UTF-8, from a line and a column (both from 0) on.
+
+    notes: what of it is no XML and was read nonetheless.
+    """
 
     file: str
     text: str
     data: bytes
     lines: int = 0
     columns: int = 0
+    notes: tuple[Note, ...] = ()
 
     @cached_property
     def text_lines(self) -> list[str]:
@@ -140,8 +147,32 @@ def read_xml(data: bytes | str, file: str) -> XmlNode:
     text = text.rstrip("\0")  # the end of a text in C, written with it
     start = text.lstrip()  # blank lines before the XML declaration are none of XML's, but files have them
     blank = LINE_END.split(text[: len(text) - len(start)])
-    encoded = _without_dashes(start).encode("utf-8", "replace")
-    return _TreeBuilder(XmlText(file, text, encoded, len(blank) - 1, len(blank[-1]))).read()
+    document = XmlText(file, text, b"", len(blank) - 1, len(blank[-1]))
+    found = declaration_of(start)
+    if found is not None and found.start():  # XML has it at the start alone; other readers take it, and so do people
+        before = LINE_END.split(start[: found.start()])
+        place = document.place(len(before), len(before[-1]), len("<?xml"))
+        said = (
+            "found the XML declaration behind a comment, expected it at the start of the file; it is read as if there"
+        )
+        document.notes = (Note(said, place.file, place.line, place.column),)
+        start = start[: found.start()] + re.sub(r"[^\r\n]", " ", found[0]) + start[found.end() :]
+    document.data = _without_dashes(start).encode("utf-8", "replace")
+    return _TreeBuilder(document).read()
+
+
+def declaration_of(text: str) -> re.Match[str] | None:
+    """The XML declaration of a text, which blanks and comments may stand before; None where it has none."""
+    at = 0
+    while True:
+        while text[at : at + 1].isspace():
+            at += 1
+        if not text.startswith("<!--", at):
+            return DECLARATION.match(text, at)
+        end = text.find("-->", at + 4)
+        if end < 0:
+            return None
+        at = end + 3
 
 
 def _decoded(data: bytes, file: str) -> str:
@@ -149,12 +180,14 @@ def _decoded(data: bytes, file: str) -> str:
     encoding = "utf-8-sig"
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         encoding = "utf-16"
-    elif not data.startswith(codecs.BOM_UTF8) and (match := DECLARED.match(data[:1024])):
+    elif not data.startswith(codecs.BOM_UTF8):
+        declaration = declaration_of(data[:BEFORE_DECLARATION].decode("latin-1"))  # a letter a byte
+        match = DECLARED.search(declaration[0]) if declaration else None
         try:
-            encoding = ENCODINGS[codecs.lookup(match[1].decode()).name]
+            encoding = ENCODINGS[codecs.lookup(match[1]).name] if match else encoding
         except (LookupError, UnicodeError):
-            name = shown(match[1].decode("utf-8", "replace"))
-            raise DescriptionError(f"found the encoding '{name}', expected UTF-8", file, 1, 1) from None
+            assert match is not None
+            raise DescriptionError(f"found the encoding '{shown(match[1])}', expected UTF-8", file, 1, 1) from None
     try:
         return data.decode(encoding)
     except UnicodeDecodeError as error:

@@ -22,8 +22,8 @@ from robokin.expected import expect_choice
 from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.frames import pose
 from robokin.kinematics.common_normal import FAR_FEET, PARALLEL, NormalStep, normal_step, turn, turn_and_shift
-from robokin.model import Joint, JointType, Robot, expect_robot, expect_uncoupled
-from robokin.model.robot import Convention, row_constants
+from robokin.model import CoupledRobot, Joint, JointType, Robot, expect_robot
+from robokin.model.robot import NO_LIMITS, Convention, row_constants
 from robokin.spatial import exact, invert
 
 CONVENTIONS = ("standard", "modified", "frames")
@@ -55,10 +55,12 @@ def to_convention(robot: Robot, convention: Convention) -> Robot:
     Source: J. Denavit and R. S. Hartenberg, A kinematic notation for lower-pair mechanisms based on matrices,
     J. Applied Mechanics 22, 1955; modified tables as J. J. Craig, Introduction to Robotics, 1986, has them.
     """
-    robot = expect_uncoupled(expect_robot(robot))
+    robot = expect_robot(robot)
     expect_choice(convention, CONVENTIONS, "convention")
     if robot.convention == convention:
         return robot
+    if isinstance(robot, CoupledRobot):
+        return _coupled(robot, convention)
     if convention == "frames":
         made = _frames(robot)
     elif robot.convention == "frames":
@@ -66,6 +68,31 @@ def to_convention(robot: Robot, convention: Convention) -> Robot:
     else:
         made = _to_modified(robot) if convention == "modified" else _to_standard(robot)
     return replace(made, convention=convention)
+
+
+def _coupled(robot: CoupledRobot, convention: Convention) -> Robot:
+    """The same of joints that hang on each other: what moves them does not change, nor what helical ones advance."""
+    rows = tuple(replace(row, pitch=0.0, motion_limits=NO_LIMITS) for row in robot.rows)
+    plain = Robot(
+        robot.name, rows, robot.convention, robot.id, robot.description, robot.source, robot.units, robot.parameters,
+        robot.base, robot.tool, texts=robot.texts, notes=robot.notes,
+    )  # fmt: skip
+    made = to_convention(plain, convention)
+    moving = iter(row for row in robot.rows if row.moves)
+    whole = []
+    for row in made.rows:
+        own = next(moving) if row.moves else row
+        whole.append(replace(row, pitch=own.pitch, motion_limits=own.motion_limits))
+    return replace(
+        robot,
+        rows=tuple(whole),
+        convention=convention,
+        parameters=made.parameters,
+        base=made.base,
+        tool=made.tool,
+        texts=made.texts,
+        notes=made.notes,
+    )
 
 
 def _to_modified(robot: Robot) -> Robot:

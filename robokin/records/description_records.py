@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,9 +14,13 @@ from robokin.kinematics.structure import structure_of
 from robokin.mobility.count import grubler
 from robokin.model import CoupledRobot, Joint, Mechanism, Robot, Tree, WheeledBase
 from robokin.model.joint_units import in_units, joint_factors
+from robokin.number_text import show
 from robokin.records.envelope import SCHEMA, envelope
 from robokin.records.pose_records import poses_in
 from robokin.units import Units
+
+if TYPE_CHECKING:
+    from robokin.formats.tree_branches import TreeBranches
 
 KINDS = {Robot: "robot", Mechanism: "mechanism", WheeledBase: "wheeled", Tree: "tree"}
 """What the key `kind` says of that which a description describes."""
@@ -265,6 +270,59 @@ def links_record(tree: Tree, units: Units) -> dict[str, Any]:
         "tips": [{"name": tip.name, "link": graph.links[tip.link]} for tip in graph.tips],
         "poses": {name: in_units(q, factors).tolist() for name, q in tree.poses.items()},
     }
+
+
+def branch_records(parts: TreeBranches, units: Units) -> list[dict[str, Any]]:
+    """The tables of a tree's branches, in the given units: of each its name, what it stands on, and its rows.
+
+    Variables have the numbers that they have in the tree; where a joint follows others its value stands in their place,
+    and what is added to it in the row's offset.
+    """
+    records = []
+    from robokin.formats.tree_branches import WORLD  # only who writes tables of trees needs it
+
+    for branch in parts.branches:
+        chain, rows = branch.chain, []
+        for place, row in enumerate(branch.rows):
+            variable = None
+            if row.moves:
+                variable, more = _value_text(parts.tree, branch.joints[place], units)
+                row = replace(row, offset=row.offset + more)
+            rows.append(_row_record(place + 1, row, variable, chain.convention, units))
+        records.append(
+            {
+                "branch": branch.name,
+                "on": branch.on or WORLD,
+                "units": units.as_record(),
+                "convention": chain.convention,
+                "base": poses_in(chain.base.copy(), units).tolist(),
+                "tool": poses_in(chain.tool.copy(), units).tolist(),
+                "rows": rows,
+            }
+        )
+    return records
+
+
+def _value_text(tree: Tree, number: int, units: Units) -> tuple[str, float]:
+    """The variables that a joint's value is made of, `q2` or `0.5 q2 - q3`, and what is added [rad | m]."""
+    graph = tree.graph
+    joint = graph.joints[number]
+    S, o = graph.value_map
+    place = graph.moving.index(number)
+    ratios, more = S[place], float(o[place])
+    own = units.radians if joint.turns else units.metres
+    text = ""
+    for i in np.nonzero(ratios)[0]:
+        ratio = float(ratios[i]) * (units.radians if tree.revolute[i] else units.metres) / own
+        size = "" if abs(ratio) == 1.0 else f"{show(abs(ratio))} "
+        sign = ("-" if ratio < 0 else "") if not text else (" - " if ratio < 0 else " + ")
+        text += f"{sign}{size}q{i + 1}"
+    return text, more
+
+
+def tip_records(parts: TreeBranches, units: Units) -> list[dict[str, Any]]:
+    """The tips of a tree's branches, in the given units: of each its name, what it is on, and its tool."""
+    return [{"name": tip.name, "on": tip.on, "tool": poses_in(tip.tool.copy(), units).tolist()} for tip in parts.tips]
 
 
 def wheel_record(base: WheeledBase, units: Units) -> dict[str, Any]:

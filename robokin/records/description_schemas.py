@@ -76,7 +76,7 @@ def show() -> Schema:
     """Documents of `robokin show`."""
     about = _about()
     variants = {
-        "robot": _robot(about),
+        "robot": _robot(about, made=True),
         "tree": _tree(about),
         "mechanism": _mechanism(about),
         "wheeled": _base(about),
@@ -86,7 +86,9 @@ def show() -> Schema:
 
 def convert() -> Schema:
     """Documents of `robokin convert`."""
-    return documents("convert", "A robot, as `show` has it, in the convention asked for.", [], robot=_robot(_about()))
+    about = _about()
+    text = "A robot, as `show` has it, in the convention asked for, or a tree."
+    return documents("convert", text, [], robot=_robot(about), tree=_tree(about))
 
 
 def _about() -> dict[str, Schema]:
@@ -116,17 +118,19 @@ def _row() -> Schema:
         {
             "i": whole("Its number.", 1),
             "name": text("Its name."),
-            "type": word("What it does.", "revolute", "prismatic", "fixed"),
-            "variable": maybe(text("Its variable, such as q1."), "of a fixed row"),
+            "type": word("What it does.", "revolute", "prismatic", "helical", "fixed"),
+            "variable": maybe(text("Its variable, such as q1."), "of a fixed row, and of one that follows others"),
             "offset": maybe(number("Added to the variable [joint]."), "of a fixed row"),
             "sense": maybe(whole("1, or -1 where the variable enters with the other sign.", -1), "of a fixed row"),
             "limits": limits,
         },
-        frames | cells,
+        frames | cells | {"pitch": number("What a helical row advances in a turn [length].")},
     )
 
 
-def _robot(about: dict[str, Schema]) -> Schema:
+def _robot(about: dict[str, Schema], made: bool = False) -> Schema:
+    """A robot; made: whether its table may be one that nobody wrote."""
+    source = {"const": "frames", "description": "What the table was made from, where nobody wrote it."}
     at_zero = record(
         "Where the tool frame stands with every joint at zero.",
         {
@@ -163,6 +167,24 @@ def _robot(about: dict[str, Schema]) -> Schema:
             "at_zero": at_zero,
             "rows": items(_row(), "The table."),
             "poses": mapping(numbers("Joint values [joint]."), "Named poses."),
+        },
+        ({"made_from": source} if made else {})
+        | {"couplings": items(_coupling(), "Of a robot whose joints hang on each other: which on which.")},
+    )
+
+
+def _coupling() -> Schema:
+    ratio = record(
+        "A joint, and what its value counts.",
+        {"joint": text("Its name."), "ratio": number("Of one unit's value to the other's.")},
+    )
+    return record(
+        "A joint whose value hangs on those of others.",
+        {
+            "joint": text("Its name."),
+            "own": flag("Whether it has a variable of its own, which is added; else it follows."),
+            "ratios": items(ratio, "What it hangs on."),
+            "offset": number("What is added [joint]."),
         },
     )
 

@@ -185,7 +185,7 @@ JOINT = record(
     "A joint in the picture.",
     {
         "name": text("Its name."),
-        "type": word("What it does.", "revolute", "prismatic"),
+        "type": word("What it does.", "revolute", "prismatic", "helical"),
         "position": PLACE,
         "axis": numbers("Its axis, a unit vector in the world [1].", 3),
     },

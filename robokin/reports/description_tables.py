@@ -58,7 +58,7 @@ def robot_table(record: dict[str, Any]) -> bytes:
         whole = "every solution" if inverse["complete"] else some
         entries.append(("inverse", f"{inverse['method']}: {inverse['reason']}; {whole}"))
     for coupling in record.get("couplings", ()):
-        entries.append(("coupled", _coupling_text(coupling)))
+        entries.append(("coupled", coupling_in_short(coupling)))
     if record["parameters"]:
         listed = ", ".join(f"{name} = {show(value)}" for name, value in record["parameters"].items())
         entries.append(("parameters", listed))
@@ -70,6 +70,8 @@ def robot_table(record: dict[str, Any]) -> bytes:
         text = transform_in_short(record[name], angle)
         if text:
             entries.append((name, text))
+    if record.get("made_from"):
+        entries.append(("made from", "the joints' frames, which robokin convert --convention frames prints"))
     entries.append(("at zero", _zero_text(record["at_zero"], units["length"])))
     entries += [("about", record["description"])] if record["description"] else []
     entries += [("source", record["source"])] if record["source"] else []
@@ -77,7 +79,7 @@ def robot_table(record: dict[str, Any]) -> bytes:
     return render(heading(record["name"], rest), "", drawn, "", pairs(entries))
 
 
-def _coupling_text(coupling: dict[str, Any]) -> str:
+def coupling_in_short(coupling: dict[str, Any]) -> str:
     """`J3 adds -1 J2`, `dip follows 0.6667 pip + 5`."""
     others = " + ".join(f"{show(other['ratio'])} {other['joint']}" for other in coupling["ratios"])
     offset = coupling["offset"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from robokin.number_text import show_range
-from robokin.reports.description_tables import transform_in_short, variable_cell
+from robokin.number_text import show, show_range
+from robokin.reports.description_tables import coupling_in_short, transform_in_short, variable_cell
 from robokin.tables.written_rows import csv_records
 
 ROWS = {"robot": "rows", "tree": "joints", "mechanism": "joints", "wheeled": "wheels"}
@@ -30,8 +30,13 @@ SPECIAL = {
 
 def csv_table(record: dict[str, Any]) -> bytes:
     """The rows of what a document describes, all numbers in full."""
-    rows = record[ROWS[record["kind"]]]
-    return csv_records(list(rows[0]), [[_csv_cell(value) for value in row.values()] for row in rows])
+    return _csv(record[ROWS[record["kind"]]])
+
+
+def _csv(rows: list[dict[str, Any]]) -> bytes:
+    """Rows as CSV; what one of them has not is empty, such as the pitch of a joint that is none of a screw."""
+    names = [*dict.fromkeys(name for row in rows for name in row)]
+    return csv_records(names, [[_csv_cell(row.get(name)) for name in names] for row in rows])
 
 
 def _csv_cell(value: Any) -> Any:
@@ -46,30 +51,63 @@ def ends_in_short(record: dict[str, Any]) -> list[str]:
     return [f"{name}: {text}" for name, text in texts if text]
 
 
+def _motions_in_short(record: dict[str, Any]) -> list[str]:
+    """What joints hang on and what screws advance, those that are there."""
+    texts = [f"{row['name']}: advances {show(row['pitch'])} a turn" for row in record["rows"] if row.get("pitch")]
+    return texts + [f"coupled: {coupling_in_short(coupling)}" for coupling in record.get("couplings", ())]
+
+
 def markdown_table(record: dict[str, Any]) -> bytes:
     """A robot's table in Markdown, numbers to six decimals."""
+    return _joined([_printable(_about(record)), "", *_markdown_lines(record)])
+
+
+def markdown_branches(name: str, branches: list[dict[str, Any]], tips: list[dict[str, Any]]) -> bytes:
+    """The tables of a tree's branches in Markdown, one below the other, and the tips."""
+    lines = [_printable(_of_branches(name, branches))]
+    for record in branches:
+        lines += ["", _printable(_about_branch(record)), "", *_markdown_lines(record)]
+    return _joined([*lines, "", *(f"- {_printable(text)}" for text in _tips_in_short(tips, branches))])
+
+
+def _joined(lines: list[str]) -> bytes:
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _markdown_lines(record: dict[str, Any]) -> list[str]:
+    """A table, and base and tool below it."""
     modified = record["convention"] == "modified"
     titles = [_named(name, modified, "{} i-1") for name in CELLS[record["convention"]]]
     lines = [["i", "joint", "type", *titles, "limits"]]
     lines += [[_printable(one).replace("\\", "\\\\").replace("|", r"\|") for one in row] for row in _cells_of(record)]
     left = [True, True, True, *[record["convention"] == "frames"] * len(titles), True]
     rule = [":--" if one else "--:" for one in left]
-    text = [_printable(_about(record)), ""]
-    text += [f"| {' | '.join(line)} |" for line in [lines[0], rule, *lines[1:]]]
-    for end in ends_in_short(record):
-        text += ["", end]
-    return ("\n".join(text) + "\n").encode()
+    text = [f"| {' | '.join(line)} |" for line in [lines[0], rule, *lines[1:]]]
+    for end in [*ends_in_short(record), *_motions_in_short(record)]:
+        text += ["", _printable(end)]
+    return text
 
 
 def latex_table(record: dict[str, Any]) -> bytes:
     """A robot's table in LaTeX, as the package booktabs draws it, numbers to six decimals."""
+    return _joined([f"% {_printable(_about(record))}", r"% \usepackage{booktabs}", *_latex_lines(record)])
+
+
+def latex_branches(name: str, branches: list[dict[str, Any]], tips: list[dict[str, Any]]) -> bytes:
+    """The tables of a tree's branches in LaTeX, one below the other, and the tips."""
+    lines = [f"% {_printable(_of_branches(name, branches))}", r"% \usepackage{booktabs}"]
+    for record in branches:
+        lines += ["", f"% {_printable(_about_branch(record))}", *_latex_lines(record)]
+    return _joined([*lines, "", *(f"% {_printable(text)}" for text in _tips_in_short(tips, branches))])
+
+
+def _latex_lines(record: dict[str, Any]) -> list[str]:
+    """A table, and base and tool below it."""
     frames, modified = record["convention"] == "frames", record["convention"] == "modified"
     names = CELLS[record["convention"]]
     titles = [name if frames else _symbol(name, modified) for name in names]
     columns = "rll" + ("l" if frames else "r") * len(names) + "l"
     lines = [
-        f"% {_printable(_about(record))}",
-        r"% \usepackage{booktabs}",
         rf"\begin{{tabular}}{{{columns}}}",
         r"\toprule",
         " & ".join(["$i$", "joint", "type", *titles, "limits"]) + r" \\",
@@ -79,12 +117,38 @@ def latex_table(record: dict[str, Any]) -> bytes:
         number, name, kind, *cells, limits = row
         cells = [_escaped(cell) if frames else _math(cell) for cell in cells]
         lines.append(" & ".join([number, _escaped(name), kind, *cells, _math(limits)]) + r" \\")
-    ends = ends_in_short(record)
+    ends = [*ends_in_short(record), *_motions_in_short(record)]
     if ends:
         lines.append(r"\midrule")
         lines += [rf"\multicolumn{{{len(columns)}}}{{l}}{{{_escaped(end)}}} \\" for end in ends]
-    lines += [r"\bottomrule", r"\end{tabular}"]
-    return ("\n".join(lines) + "\n").encode()
+    return [*lines, r"\bottomrule", r"\end{tabular}"]
+
+
+def csv_branches(branches: list[dict[str, Any]]) -> bytes:
+    """The rows of a tree's branches, all numbers in full, with the branch and what it stands on before each."""
+    rows = [{"branch": record["branch"], "on": record["on"]} | row for record in branches for row in record["rows"]]
+    return _csv(rows)
+
+
+def _of_branches(name: str, branches: list[dict[str, Any]]) -> str:
+    length, angle = branches[0]["units"]["length"], branches[0]["units"]["angle"]
+    count = "1 branch" if len(branches) == 1 else f"{len(branches)} branches"
+    return f"{name}: tree of {count}, lengths in {length}, angles in {angle}"
+
+
+def _about_branch(record: dict[str, Any]) -> str:
+    return f"{record['branch']}, on {record['on']}: {record['convention']} convention"
+
+
+def _tips_in_short(tips: list[dict[str, Any]], branches: list[dict[str, Any]]) -> list[str]:
+    """Where each tip is, in a few words."""
+    ends = {record["branch"] for record in branches}
+    texts = []
+    for tip in tips:
+        tool = transform_in_short(tip["tool"], branches[0]["units"]["angle"])
+        place = f"the end of {tip['on']}" if tip["on"] in ends else tip["on"]
+        texts.append(f"tip {tip['name']}: {place}{f', {tool}' if tool else ''}")
+    return texts
 
 
 def _about(record: dict[str, Any]) -> str:

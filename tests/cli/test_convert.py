@@ -143,3 +143,129 @@ def test_axes_that_are_nearly_parallel(call, tmp_path):
 )
 def test_what_is_wrong_is_said(call, arguments, fragments):
     refused(call("convert", *arguments), *fragments)
+
+
+# Trees ------------------------------------------------------------------------------------------------------------
+
+FORKED = """\
+<robot name="torso">
+  <link name="body"/><link name="left"/><link name="hand"/><link name="right"/>
+  <joint name="turn" type="continuous"><parent link="body"/><child link="left"/><axis xyz="0 0 1"/></joint>
+  <joint name="lift" type="continuous"><parent link="body"/><child link="right"/><axis xyz="0 0 1"/></joint>
+  <joint name="bend" type="continuous"><parent link="left"/><child link="hand"/>
+    <origin xyz="0.3 0 0.1"/><axis xyz="0 1 0"/></joint>
+</robot>
+"""
+
+
+def same_tips(one, other):
+    assert [*one] == [*other]
+    for name, tip in one.items():
+        np.testing.assert_allclose(tip["matrix"], other[name]["matrix"], atol=1e-9)
+
+
+@pytest.mark.parametrize("convention", ["standard", "modified", "frames"])
+def test_a_tree_is_written_as_its_branches(call, convention, tmp_path):
+    file = tmp_path / "hand.yaml"
+    answer = call("convert", "human-hand", "--convention", convention, "-o", file)
+    assert (answer.status, answer.err) == (0, "")
+    assert f"convention: {convention}\n" in file.read_text()
+    for pose in ("pinch", "fist"):
+        poses = [call("fk", name, "--q", pose, "--json").json["tips"] for name in ("human-hand", file)]
+        same_tips(*poses)
+    assert call("show", "human-hand", "--yaml").out == call("convert", "human-hand").out
+    assert call("show", "human-hand", "--yaml", "--tip", "index").text.startswith("robokin: 1\n")
+
+
+def test_another_order_of_joint_values_is_said(call, tmp_path):
+    file = tmp_path / "torso.urdf"
+    file.write_text(FORKED)
+    answer = call("convert", file)
+    assert answer.status == 0
+    assert "in another order than before: q is turn, bend, lift" in answer.err
+    tree = read_text(answer.text)
+    assert [joint.name for joint in tree.joints] == ["hand.turn", "hand.bend", "right.lift"]
+    assert tree.tips == ("hand", "right")
+    again = tmp_path / "again.yaml"
+    again.write_text(answer.text)
+    assert call("convert", again).err == ""
+
+
+def test_a_tree_as_a_urdf(call, tmp_path):
+    file = tmp_path / "hand.urdf"
+    assert call("convert", "human-hand", "-o", file).err == ""
+    q = ",".join(map(str, range(21)))
+    tips = [call("fk", name, "--q", q, "--angle", "deg", "--length", "mm", "--json").json["tips"]
+            for name in ("human-hand", file)]  # fmt: skip
+    same_tips(*tips)
+    refused(call("convert", "human-hand", "-f", "urdf", "--convention", "modified"), "expected frames or nothing")
+
+
+def test_tables_of_branches(call):
+    text = call("convert", "human-hand", "--convention", "standard", "-f", "markdown").text
+    assert text.startswith("Human hand: tree of 5 branches, lengths in mm, angles in deg\n\nthumb, on base: standard")
+    assert "| 4 | dip | revolute | q9 | 0 | 18.43 | 0 | 0 .. 90 |" in text
+    assert text.endswith("- tip ring: the end of ring\n- tip little: the end of little\n")
+    latex = call("convert", "human-hand", "-f", "latex").text
+    assert latex.count(r"\toprule") == latex.count(r"\end{tabular}") == 5
+    answer = call("convert", "human-hand", "--convention", "modified", "-f", "csv")
+    rows = list(csv.DictReader(answer.text.splitlines()))
+    assert [row["variable"] for row in rows] == [f"q{i}" for i in range(1, 22)]
+    assert rows[8] | {"branch": "index", "on": "base", "name": "dip", "a": "27.17", "limits": "0.0 90.0"} == rows[8]
+    assert "a CSV has no place for base: Trans(9.12, 22.61, 0); tool: Trans(30.02, 0, 0) of thumb" in answer.err
+    assert call("convert", "human-hand", "--json").json == call("show", "human-hand", "--json").json
+    refused(call("convert", "human-hand", "--json", "--convention", "standard"), "document of a tree", "--tip with one")
+
+
+def test_tables_say_what_joints_follow(call, tmp_path):
+    file = tmp_path / "pair.yaml"
+    file.write_text(
+        "robokin: 1\nname: pair\nunits: {length: mm, angle: deg}\nbranches:\n"
+        "  a: {joints: [{name: p, type: R}, {name: s, type: P}, {name: q, type: R, offset: 5}, {name: r, type: R}]}\n"
+        "  b: {on: a, joints: [{name: t, type: R}]}\n"
+        "couplings:\n  - {joint: q, follows: p, ratio: -2, offset: 10}\n  - {joint: r, adds: {p: 1, s: 0.5}}\n"
+    )
+    text = call("convert", file, "--convention", "standard", "-f", "markdown").text
+    assert "| 3 | q | revolute | -2 q1 + 15 | 0 |" in text
+    assert "| 4 | r | revolute | q1 + 0.5 q2 + q3 | 0 |" in text
+    assert "| 1 | t | revolute | q4 | 0 |" in text
+    assert "b, on a: standard convention" in text
+
+
+FOREARM = """\
+robokin: 1
+name: forearm
+units: {length: mm, angle: deg}
+joints:
+  - {name: a, type: R, a: 300, limits: [-90, 90], motion_limits: [-80, 80]}
+  - {name: b, type: R, a: 200, offset: 20}
+  - {name: screw, type: H, pitch: 5, alpha: 90}
+couplings:
+  - {joint: b, adds: a, ratio: -1}
+  - {joint: screw, follows: {b: 2, a: 1/3}, offset: 10}
+"""
+
+
+@pytest.mark.parametrize("convention", ["standard", "modified", "frames"])
+def test_joints_that_hang_on_others_do_so_in_every_form(call, tmp_path, convention):
+    file, made = tmp_path / "forearm.yaml", tmp_path / "made.yaml"
+    file.write_text(FOREARM)
+    assert call("convert", file, "--convention", convention, "-o", made).err == ""
+    poses = [call("fk", name, "--q", "30,40", "--json").json["pose"]["matrix"] for name in (file, made)]
+    np.testing.assert_allclose(*poses, atol=1e-9)
+    text = call("convert", file, "--convention", convention, "-f", "markdown").text
+    for line in ("screw: advances 5 a turn", "coupled: b adds -1 a", "coupled: screw follows 2 b + 0.333333 a + 10"):
+        assert f"\n{line}\n" in text
+    rows = list(csv.DictReader(call("convert", file, "--convention", convention, "-f", "csv").text.splitlines()))
+    assert [row["pitch"] for row in rows] == ["", "", "5.0"]
+    assert [row["limits"] for row in rows] == ["-90.0 90.0", "", ""]
+    refused(call("convert", file, "-f", "urdf"), "joint b moves with a, b")
+
+
+def test_a_chain_without_what_moves_it(call, tmp_path):
+    file = tmp_path / "two.yaml"
+    chain = "{joints: [{name: p, type: R, a: 1}, {name: q, type: R, a: 1}]}"
+    file.write_text(f"robokin: 1\nname: two\nbranches:\n  a: {chain}\n  b: {chain}\n"
+                    "couplings: [{joint: b.q, follows: a.p, ratio: 2}]\n")  # fmt: skip
+    refused(call("convert", file, "--tip", "b"), "a.p moves others and is not in the chain", "expected the tree")
+    assert call("convert", file).status == call("convert", file, "-f", "urdf").status == 0

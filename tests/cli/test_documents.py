@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 from functools import cache
+from pathlib import Path
 
 import pytest
 from jsonschema import Draft202012Validator
@@ -15,6 +16,9 @@ from robokin.records.schemas import CHECKS, HOMES, document_schema
 
 from .conftest import invoke
 
+ROOT = Path(__file__).parent.parent.parent
+PENDANT, FINGERS, SCREW = (str(ROOT / name) for name in (
+    "docs/trees/pendant.yaml", "docs/trees/fingers.yaml", "tests/data/screw.yaml"))  # fmt: skip
 POSE = "Trans(500,100,300) RPY(180,0,45)"
 COMMANDS = [
     ["list", "puma"],
@@ -22,8 +26,14 @@ COMMANDS = [
     ["show", "puma560"], ["show", "puma560-craig"], ["show", "scara-frames"], ["show", "four-bar"], ["show", "car"],
     ["show", "planetary"], ["show", "omni-three"],
     ["convert", "puma560", "--convention", "modified"], ["convert", "puma560", "--convention", "frames"],
+    ["convert", "human-hand"], ["show", "human-hand", "--tip", "index"],
     ["fk", "puma560", "--q", "home"], ["fk", "puma560", "--q", "home", "--frames", "--as", "euler"],
     ["fk", "human-hand", "--q", "fist"], ["dof", "human-hand"], ["show", "human-hand"],
+    ["show", PENDANT], ["show", SCREW], ["show", FINGERS, "--tip", "index"], ["fk", SCREW, "--q", "1,2,3"],
+    ["ik", PENDANT, "--xyz", "500,100,700", "--rpy", "180,60,0"], ["ik", SCREW, "--xyz", "500,100,-5"],
+    ["ik", PENDANT, "--xyz", "500,100,2700", "--rpy", "180,60,0"], ["plot", SCREW, "--frames"], ["dof", SCREW],
+    ["convert", SCREW, "--convention", "modified"], ["convert", PENDANT, "--convention", "modified"],
+    ["path", PENDANT, "--from", "0,0,0,0,10,0", "--to", "0,100,0,0,10,0", "--steps", "4"], ["singular", PENDANT],
     ["fk", "planar2r", "--q", "1,2", "--q", "3,4"], ["fk", "anthropomorphic", "--symbolic"],
     ["fk", "anthropomorphic", "--symbolic", "--frames", "--numbers"], ["fk", "puma560", "--q", "0,0,0,0,0,999"],
     ["fk", "scara", "--q", "0,0,0,0", "--length", "in", "--angle", "rad", "--as", "matrix"],
@@ -209,6 +219,7 @@ ORIENTATIONS = {"quaternion-xyzw", "rotvec", "abc", "wpr"}
 ELSEWHERE = {
     ("fk", None): ORIENTATIONS,
     ("show", None): {"joint", "ratio"},  # of couplings, which test_trees has
+    ("convert", None): {"joint", "ratio"},
     ("plot", None): ORIENTATIONS | {"euler"},
     ("workspace", None): {*ORIENTATIONS, "euler", "rpy", "quaternion", "matrix", "pose", "q", "holds", "length_error"},
     ("check", "fk"): {"student", "students", "line", "approach", "matrix", "task", "relative"},

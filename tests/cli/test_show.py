@@ -170,3 +170,66 @@ def test_a_table_has_some_of_very_many_poses_and_says_how_many_more(call, tmp_pa
     assert "pose p40" not in text
     assert "and 60 more poses, which --json has" in text
     assert len(call("show", path, "--json").json["poses"]) == 100
+
+
+# Tables that are made --------------------------------------------------------------------------------------------
+
+
+def product(document, q):
+    """The pose that a document's standard table has at q, base and tool included."""
+    T = np.array(document["base"])
+    values = iter(q)
+    for row in document["rows"]:
+        value = row["sense"] * next(values) + row["offset"]
+        theta, d = (value, row["d"]) if row["type"] == "revolute" else (row["theta"], value)
+        c, s, ca, sa = np.cos(theta), np.sin(theta), np.cos(row["alpha"]), np.sin(row["alpha"])
+        a = row["a"]
+        T = T @ [[c, -s * ca, s * sa, a * c], [s, c * ca, -c * sa, a * s], [0, sa, ca, d], [0, 0, 0, 1]]
+    return T @ np.array(document["tool"])
+
+
+@pytest.mark.parametrize("robot", ["puma560", "panda", "scara", "stanford", "ur5e", "human-arm", "so-101"])
+def test_a_urdf_is_shown_as_its_table(call, tmp_path, robot):
+    file = tmp_path / "arm.urdf"
+    assert call("convert", robot, "-o", file).status == 0
+    answer = call("show", file, "--json", "--exact")
+    assert answer.err == ""
+    document = answer.json
+    assert (document["convention"], document["made_from"]) == ("standard", "frames")
+    own = robokin.load(robot)
+    for q in np.random.default_rng(0).uniform(-2.0, 2.0, (5, own.n)):
+        np.testing.assert_allclose(product(document, q), robokin.forward_kinematics(own, q), atol=1e-11)
+    text = call("show", file, "--exact").text
+    assert "standard convention, lengths in m, angles in rad" in text
+    assert "made from the joints' frames, which robokin convert --convention frames prints" in " ".join(text.split())
+
+
+def test_the_chain_of_a_tree_is_shown_as_its_table(call):
+    document = call("show", "human-hand", "--tip", "index", "--json", "--length", "m", "--angle", "rad").json
+    assert (document["convention"], document["made_from"]) == ("standard", "frames")
+    own = robokin.load("human-hand", tip="index")
+    for q in np.random.default_rng(1).uniform(-2.0, 2.0, (5, own.n)):
+        np.testing.assert_allclose(product(document, q), robokin.forward_kinematics(own, q), atol=1e-12)
+    assert document["parameters"] == {"HL": 190.0, "HB": 85.0}
+    assert call("show", "human-hand", "--tip", "index", "-f", "csv").text.startswith("i,name,type,variable,theta,d,a")
+
+
+def test_a_table_that_someone_wrote_is_shown_as_it_is(call):
+    for robot in ("scara-frames", "puma560", "puma560-craig"):
+        assert "made from" not in call("show", robot).text
+        assert "made_from" not in call("show", robot, "--json").json
+
+
+def test_a_urdf_without_a_table_is_shown_in_frames(call, tmp_path):
+    file = tmp_path / "near.urdf"
+    file.write_text(
+        '<robot name="near"><link name="a"/><link name="b"/><link name="c"/>'
+        '<joint name="p" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>'
+        '<joint name="q" type="continuous"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>'
+        '<origin xyz="0.4 0.01 0" rpy="0.0001 0 0"/></joint></robot>'
+    )
+    answer = call("show", file)
+    assert answer.status == 0
+    assert "0.0001 rad from parallel" in answer.err
+    assert "frames convention" in answer.text
+    assert "made from" not in answer.text

@@ -107,13 +107,15 @@ def test_where_one_is_meant_of_several_they_are_listed(call, fingers):
     refused(call("dof", "four-bar", "--tip", "x"), "expected the description of a robot or a tree")
 
 
-def test_a_chain_with_a_joint_that_follows_is_refused_with_its_name(call, tmp_path):
+def test_a_chain_with_a_joint_that_follows_answers(call, tmp_path):
     path = tmp_path / "coupled.yaml"
     couplings = "couplings: [{joint: index.pip, follows: index.mcp, ratio: 2/3}]\n"
     path.write_text(FINGERS.replace("[0, 0, 0, 90]", "[0, 0, 90]") + couplings)
-    refused(
-        call("ik", path, "--tip", "index", "--xyz", "1,2,3"), "joint index.pip on the way to index hangs on index.mcp"
-    )
+    pose = call("fk", path, "--tip", "index", "--q", "10,30", "--json").json["pose"]
+    found = call("ik", path, "--tip", "index", "--xyz", ",".join(map(repr, pose["position"])), "--json").json
+    assert not found["complete"]
+    assert any(abs(s["q"][0] - 10) + abs(s["q"][1] - 30) < 1e-6 for s in found["solutions"])
+    refused(call("workspace", path, "--tip", "index"), "joint index.pip hangs on index.mcp")
     assert call("fk", path, "--q", "0,30,0").status == 0
 
 

@@ -246,3 +246,111 @@ def test_load_names_the_tips_of_a_tree(tmp_path):
         robokin.load(path, tip="rin")
     with pytest.raises(InputError, match=r"is a tree of links, expected a mechanism"):
         robokin.load_mechanism(path)
+
+
+# Chains in other forms -------------------------------------------------------------------------------------------
+
+FORMS = {
+    "screws": """\
+convention: screws
+base: Trans(10, 20, l) Rot(z, 30)
+home: Trans(500, 0, l) Rot(y, 90)
+joints:
+  - {name: a, type: R, axis: z, limits: [-90, 90]}
+  - {name: b, type: R, axis: y, at: [0, 0, l]}
+  - {name: c, type: P, axis: [1, 0, 1], sense: -1}
+""",
+    "ets": """\
+base: Rot(x, 20)
+ets: tz(l) Rz(q1) tx(100) Ry(-q2) tx(200) Rz(q3 + 90) tz(q4) Rx(30)
+limits: [[-90, 90], ~, ~, [0, 50]]
+tool: Trans(1, 2, 3)
+""",
+    "opw": """\
+convention: opw
+base: Trans(0, 0, l)
+a1: 100
+a2: -50
+b: 10
+c1: 300
+c2: l
+c3: 250
+c4: 80
+offsets: [0, 0, -90, 0, 0, 180]
+senses: [1, 1, -1, 1, -1, 1]
+limits: [[-90, 90], ~, ~, ~, ~, ~]
+tool: Trans(0, 0, 30) Rot(z, 15)
+""",
+}
+HEAD = "robokin: 1\nname: forms\nunits: {length: mm, angle: deg}\nparameters: {l: 123}\n"
+
+
+def indented(text):
+    return "".join(f"    {line}\n" for line in text.splitlines())
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_branch_in_another_form_is_the_chain_of_the_robot(form):
+    """Alone, and on the end of a table; with a table on its own end; the file's convention is that of the tables."""
+    robot = read_text(HEAD + FORMS[form])
+    branches = (
+        f"convention: modified\nbranches:\n  arm:\n{indented(FORMS[form])}"
+        "  torso: {joints: [{type: R, a: 70, alpha: 20, d: 30}], tool: 'Trans(1, 2, 3)'}\n"
+        f"  other:\n    on: torso\n{indented(FORMS[form])}"
+        "  hand: {on: arm, convention: standard, joints: [{name: finger, type: R, a: 70, alpha: 20}]}\n"
+    )
+    tree = read_text(HEAD + branches)
+    assert tree.tips == ("other", "hand")
+    n = robot.n
+    np.testing.assert_array_equal(tree.limits[:n], robot.limits)
+    assert [joint.name for joint in tree.joints[:n]] == [f"arm.{joint.name}" for joint in robot.joints]
+    rng = np.random.default_rng(11)
+    for _ in range(5):
+        q, p, t, f = rng.uniform(-1, 1, n), rng.uniform(-1, 1, n), *rng.uniform(-1, 1, 2)
+        other, hand = robokin.tip_poses(tree, [*q, t, *p, f])
+        torso = dh(0, 0, 0.07, math.radians(20)) @ dh(t, 0.03, 0, 0) @ shift(0.001, 0.002, 0.003)
+        np.testing.assert_allclose(other, torso @ robokin.forward_kinematics(robot, p), atol=1e-14)
+        end = robokin.forward_kinematics(robot, q) @ dh(f, 0, 0.07, math.radians(20))
+        np.testing.assert_allclose(hand, end, atol=1e-14)
+    assert read_text(HEAD + branches).robot("hand").n == n + 1
+
+
+def test_a_files_convention_is_that_of_branches_that_state_none():
+    own = "".join(line + "\n" for line in FORMS["screws"].splitlines() if not line.startswith("convention"))
+    tree = read_text(HEAD + f"convention: screws\nbranches:\n  a:\n{indented(own)}  b:\n{indented(FORMS['ets'])}")
+    robot = read_text(HEAD + FORMS["screws"])
+    q = np.full(tree.n, 0.3)
+    np.testing.assert_allclose(robokin.tip_poses(tree, q)[0], robokin.forward_kinematics(robot, q[:3]), atol=1e-15)
+
+
+def test_joints_of_other_forms_follow_and_are_stood_on():
+    text = HEAD + (
+        "branches:\n  a: {ets: 'Rz(q1) tx(100) Rz(q2)'}\n  b: {on: a.1, ets: 'tx(50) Rz(q1)'}\n"
+        "couplings: [{joint: a.2, follows: b.1, ratio: 2}]\ntips: [a, b]\n"
+    )
+    tree = read_text(text)
+    a, b = robokin.tip_poses(tree, [0.3, 0.2])
+    np.testing.assert_allclose(a, dh(0.3, 0, 0.1, 0) @ dh(0.4, 0, 0, 0), atol=1e-15)
+    np.testing.assert_allclose(b, dh(0.3, 0, 0.05, 0) @ dh(0.2, 0, 0, 0), atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("branch", "message"),
+    [
+        ("{convention: screws, joints: [{type: R}]}", "7:6: found no 'home' in the branch a"),
+        ("{convention: screws, home: '', tool: '', joints: [{type: R}]}", "found 'tool' beside `convention: screws`"),
+        ("{convention: opw, c2: 1}", "found no 'c3' in the branch a"),
+        ("{ets: 'Rz(q1)', joints: [{type: R}]}", "found 'joints' beside `ets`"),
+        ("{ets: 'Rz(q1) Rq(q2)'}", "found the unknown step 'Rq' in ets"),
+        ("{ets: 'tz(1)'}", "found no joint in ets"),
+        ("{convention: screw, home: '', joints: [{type: R}]}", "did you mean 'screws'"),
+        ("{home: '', joints: [{type: R}]}", "found 'home' in a table of joints, expected it only with `convention: sc"),
+        ("[1]", "found a list"),
+        ("{ets: 'Rz(q1)', name: a}", "found the unknown key 'name' in the branch a"),
+    ],
+)
+def test_mistakes_in_other_forms_have_their_place(branch, message):
+    text = HEAD.replace("parameters: {l: 123}\n", "parameters: {l: 123}\n\n") + f"branches:\n  a: {branch}\n"
+    with pytest.raises(DescriptionError) as raised:
+        read_text(text)
+    assert message in str(raised.value)

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+import robokin
 from robokin.errors import DescriptionError
 from robokin.formats.snapped_angles import snapped_angle
 from robokin.formats.urdf import read_urdf
@@ -365,3 +366,72 @@ def test_an_entity_bomb_is_refused_at_its_first_word():
     entities = "".join(f"<!ENTITY {b} '{f'&{a};' * 10}'>" for a, b in pairwise(names))
     error = refusal(f"<!DOCTYPE r [<!ENTITY a 'lol'>{entities}]><robot>&j;</robot>".encode())
     assert "document type" in error.message
+
+
+# An XML declaration that does not stand first ----------------------------------------------------------------------
+
+LICENCE = "<!-- A licence - -- of\n     several lines <?xml version='1.0' encoding='utf-16'?> -->\r\n\n<!---->  "
+ARM = (
+    "<robot name='é'><link name='a'/><link name='b'/>\n"
+    "  <joint name='j' type='continuous'><parent link='a'/><child link='b'/></joint></robot>"
+)
+
+
+def test_a_declaration_behind_comments_is_read_with_a_note():
+    """As other readers take it; five of 1,826 files in the wild have one."""
+    text = LICENCE + '<?xml version="1.0" encoding="utf-8"\n ?>\n' + ARM
+    for given in (text, text.encode(), b"\xef\xbb\xbf" + text.encode(), "\n \n" + text):
+        tree = read_urdf(given, "a.urdf")
+        note = tree.notes[0]
+        down = 2 if given[:1] == "\n" else 0
+        assert (note.file, note.line, note.column) == ("a.urdf", 4 + down, 10)
+        assert "found the XML declaration behind a comment" in note.message
+        assert tree.name == "é"
+    wrong = text.replace("link='a'", "link='x'")
+    with pytest.raises(DescriptionError) as raised:
+        read_urdf(wrong, "a.urdf")
+    assert (raised.value.line, raised.value.column) == (7, 51)
+    assert "<joint name='j'" in str(raised.value)
+
+
+def test_the_encoding_of_a_declaration_behind_comments():
+    text = LICENCE + '<?xml version="1.0" encoding="latin-1"?>' + ARM
+    assert read_urdf(text.encode("latin-1"), "a.urdf").name == "é"
+    with pytest.raises(DescriptionError, match="utf-7"):
+        read_urdf(text.replace("latin-1", "utf-7").encode(), "a.urdf")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<!-- <?xml version='1.0'?>" + ARM,
+        "<?xml version='1.0'?><!-- --><?xml version='1.0'?>" + ARM,
+        "<!-- --><?xml version='1.0'" + ARM,
+        "<!-- --><?xmlversion='1.0'" + ARM,
+        "x<?xml version='1.0'?>" + ARM,
+        ARM[:60] + "<?xml version='1.0'?>" + ARM[60:],
+        "<!---->" * 200_000,
+    ],
+)
+def test_other_declarations_are_no_xml(text):
+    with pytest.raises(DescriptionError):
+        read_urdf(text, "a.urdf")
+    with pytest.raises(DescriptionError):
+        read_urdf(text.encode(), "a.urdf")
+
+
+def test_other_formats_tell_of_it_too(tmp_path):
+    before = "<!-- a --><?xml version='1.0'?>"
+    texts = {
+        "a.xml": before + "<mujoco><worldbody><body><joint/><geom/></body></worldbody></mujoco>",
+        "a.xacro": before + "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='fixed'>"
+        "<parent link='a'/><child link='b'/></joint></robot>",
+        "a.sdf": before + "<sdf version='1.7'><model name='m'><link name='a'/><link name='b'/>"
+        "<joint name='j' type='revolute'><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint>"
+        "</model></sdf>",
+    }
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text)
+        notes = robokin.load_tree(tmp_path / name).notes
+        assert (notes[0].line, notes[0].column) == (1, 11), name
+        assert "behind a comment" in notes[0].message

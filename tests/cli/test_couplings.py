@@ -1,0 +1,129 @@
+"""Robots whose joints hang on each other, in the shell: what is typed, what moves, and what is refused."""
+
+from __future__ import annotations
+
+import pytest
+from cli.conftest import refused
+
+PENDANT = """robokin: 1
+name: Pendant arm
+units: {length: mm, angle: deg}
+joints:
+  - {name: J1, type: R, d: 400, a: 50, alpha: -90, limits: [-170, 170]}
+  - {name: J2, type: R, a: 400, offset: -90, limits: [-60, 140]}
+  - {name: J3, type: R, a: 30, alpha: -90, limits: [-120, 200], motion_limits: [-90, 90]}
+  - {name: J4, type: R, d: 400, alpha: 90, limits: [-190, 190]}
+  - {name: J5, type: R, alpha: -90, limits: [-120, 120]}
+  - {name: J6, type: R, d: 80, limits: [-360, 360]}
+couplings:
+  - {joint: J3, adds: J2, ratio: -1}
+poses: {bent: [10, 20, 30, 40, 50, 60]}
+"""
+
+FINGER = """robokin: 1
+name: Finger
+units: {length: mm, angle: deg}
+joints:
+  - {name: abd, type: R, alpha: -90, limits: [-20, 20]}
+  - {name: mcp, type: R, a: 46, limits: [-45, 90]}
+  - {name: pip, type: R, a: 27, limits: [0, 100]}
+  - {name: dip, type: R, a: 18, limits: [0, 60]}
+couplings: [{joint: dip, follows: pip, ratio: 2/3}]
+"""
+
+SCREW = """robokin: 1
+name: Screw
+units: {length: mm, angle: deg}
+joints:
+  - {type: R, a: 300}
+  - {type: R, a: 250, alpha: 180}
+  - {name: spindle, type: helical, pitch: 20, limits: [0, 3600]}
+"""
+
+
+@pytest.fixture
+def write(tmp_path):
+    def written(text, name="robot.yaml"):
+        path = tmp_path / name
+        path.write_text(text)
+        return path
+
+    return written
+
+
+def test_what_is_typed_is_what_comes_back(call, write):
+    path = write(PENDANT)
+    pose = call("fk", path, "--q", "bent", "--json").json["pose"]
+    position, rpy = (",".join(map(repr, pose[key])) for key in ("position", "rpy"))
+    found = call("ik", path, f"--xyz={position}", f"--rpy={rpy}", "--json").json
+    assert found["complete"] and found["basis"] == "counted"
+    assert any(max(abs(a - b) for a, b in zip(s["q"], [10, 20, 30, 40, 50, 60], strict=True)) < 1e-6
+               for s in found["solutions"])  # fmt: skip
+    plain = write(PENDANT.replace("couplings:\n  - {joint: J3, adds: J2, ratio: -1}\n", ""), "plain.yaml")
+    assert call("fk", plain, "--q", "10,20,10,40,50,60", "--json").json["pose"]["matrix"] == pose["matrix"]
+
+
+def test_tables_and_documents_say_what_hangs_on_what(call, write):
+    for text, said in ((PENDANT, "J3 adds -1 J2"), (FINGER, "dip follows 0.666667 pip"), (SCREW, "helical")):
+        path = write(text)
+        assert said in call("show", path).text
+        assert call("show", path, "--json").json["kind"] == "robot"
+        assert call("validate", path).status == 0
+    record = call("show", write(SCREW), "--json").json
+    assert (record["rows"][2]["type"], record["rows"][2]["pitch"]) == ("helical", pytest.approx(20.0))
+    assert call("show", write(FINGER), "--json").json["couplings"] == [
+        {"joint": "dip", "own": False, "ratios": [{"joint": "pip", "ratio": 2 / 3}], "offset": 0.0}
+    ]
+    assert "of 4 freedoms 3 are left" in call("dof", write(FINGER)).text
+    assert "helical" in call("dof", write(SCREW)).text
+
+
+def test_other_commands_take_them(call, write):
+    for text, q in ((PENDANT, "10,20,30,40,50,60"), (FINGER, "10,20,30"), (SCREW, "10,20,30")):
+        path = write(text)
+        for command in (("jacobian", path, "--q", q), ("singular", path), ("plot", path, "--q", q),
+                        ("path", path, "--from", q, "--to", q), ("plot", path, "--q", q, "--json", "--frames"),
+                        ("check", "fk", path, "--q", q, "--expect", "1,2,3")):  # fmt: skip
+            assert call(*command).status in (0, 3), command
+    line = call("path", write(PENDANT), "--from", "0,0,0,0,10,0", "--to", "10,20,30,0,10,0", "--line", "--json").json
+    assert line["fraction"] == 1.0
+    over = call("path", write(PENDANT), "--from", "0,0,0,0,10,0", "--to", "0,100,0,0,10,0", "--json").json
+    assert "the motion of joint J3 leaves its limits" in str(over["events"])
+    assert over["fraction"] == pytest.approx(0.9)
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (("workspace",), "joint dip hangs on pip"),
+        (("fk", "--symbolic"), "joint dip hangs on pip"),
+        (("path", "--from", "0,0,10", "--to", "0,10,20", "--line"), "joint dip hangs on pip"),
+        (("ik", "--xyz", "60,0,-20", "--hold", "q1=3"), "joint dip hangs on pip"),
+        (("ik", "--xyz", "60,0,-20", "--explain"), "joint dip hangs on pip"),
+    ],
+)
+def test_what_needs_joints_one_by_one_says_which_does_not(call, write, command, said):
+    path = write(FINGER)
+    refused(call(command[0], path, *command[1:]), said)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (FINGER.replace("follows: pip", "follows: dip"), "the couplings go round in a circle"),
+        (FINGER.replace("follows: pip", "follows: pipp"), "found the unknown joint 'pipp'; did you mean 'pip'"),
+        (FINGER.replace("[0, 60]", "[200, 260]"), "no value of joint pip is within the limits of all joints"),
+        (SCREW.replace("pitch: 20, ", ""), "found no 'pitch' of row 3"),
+        (SCREW.replace("pitch: 20", "pitch: 0"), "found the pitch 0 of row 3"),
+        (SCREW.replace("helical", "R"), "found 'pitch' of row 3, expected it on a helical row alone"),
+        (
+            PENDANT.replace("bent: [10, 20, 30, 40, 50, 60]", "bent: [10, 20]"),
+            "found 2 values in the pose bent, expected 6",
+        ),
+        (FINGER + "poses: {fist: [0, 0, 0, 0]}\n", "found 4 values in the pose fist, expected 3"),
+    ],
+)
+def test_mistakes_are_said_with_their_place(call, write, text, said):
+    result = call("validate", write(text))
+    assert result.status in (2, 3)
+    assert said in result.text + result.err
