@@ -33,9 +33,10 @@ from robokin.inverse.self_motion.redundant import NOT_FOUND, UNPROVEN
 from robokin.inverse.single_answer import FAR
 from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution
 from robokin.inverse.target_block import OUTSIDE
+from robokin.inverse.verify import within_limits, wrapped
 from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.facts import fact
-from robokin.model import CoupledRobot, Robot
+from robokin.model import CoupledRobot
 from robokin.model.robot import tolerated, within
 
 TURN = 2.0 * math.pi
@@ -78,9 +79,9 @@ def solve_coupled(
         free = solve(robot.free_motion, T)
         wish = _Wish(robot, task, limits, near, turns, most, seed)
         results = [_of_motion(wish, T[i], free[i]) for i in range(len(T))]
-        return _batch(robot, results, free.method)
+        return _batch(wish, T, results, free.method)
     wish = _Wish(robot, task, limits, near, turns, most, seed)
-    return _batch(robot, [_searched(wish, target) for target in T], "search")
+    return _batch(wish, T, [_searched(wish, target) for target in T], "search")
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +121,7 @@ def _of_motion(wish: _Wish, T: Array, motion: Result) -> Result:
             like = next(s for s in motion.solutions)
             rows += [(arc.q[len(arc.q) // 2], like) for arc in arcs]
     cut_motions = bool(motion.families) and wish.limits
-    if not rows and (motion.solutions or not motion.complete):
+    if not rows and (motion.families or not motion.complete):
         found = _search_one(wish, T)
         if found is not None:
             rows = [(found, _no_name(found))]
@@ -139,10 +140,9 @@ def _of_motion(wish: _Wish, T: Array, motion: Result) -> Result:
     )  # fmt: skip
     if listed:
         return told
-    nearest = _nearest(wish, T)
     if not motion.solutions:
-        return replace(told, reason=motion.reason, nearest=nearest)
-    return replace(told, reason=OUTSIDE if complete else UNPROVEN, nearest=nearest)
+        return replace(told, reason=motion.reason)
+    return replace(told, reason=OUTSIDE if complete else UNPROVEN)
 
 
 def _listed(wish: _Wish, T: Array, rows: Sequence[tuple[Array, Solution]]) -> list[Solution]:
@@ -195,11 +195,24 @@ def _groups(robot: CoupledRobot) -> list[tuple[Index, Index]]:
     return groups
 
 
+@fact
+def _one_for_each(robot: CoupledRobot) -> bool:
+    """Whether full turns of the joints are full turns of the variables: a posture is one configuration of these."""
+    turned = robot.drive.inverse[:, robot.free_motion.revolute]
+    return bool(np.all(turned[robot.revolute] % 1.0 == 0.0) and not turned[~robot.revolute].any())
+
+
 def _configurations(robot: CoupledRobot, u: Array, limits: bool, turns: bool) -> tuple[list[Array], bool]:
     """The variables (n,) [rad | m] that stand for the same posture as u (n,), one of those that are full turns apart.
 
     With `limits` those within these; with `turns` all of them. Also whether there are more of them without end.
     """
+    if not turns and _one_for_each(robot):
+        q, inside = within_limits(wrapped(u[None], robot.revolute), robot.revolute, robot.limits, None)
+        if not inside[0]:  # no turn of a variable is within its limits
+            return ([] if limits else [q[0]]), False
+        if robot.within_limits(q[0]):
+            return [q[0]], False
     choices, endless = [], False
     for rows, variables in _groups(robot):
         found, more = _of_group(robot, rows, variables, u, limits, turns)
@@ -414,9 +427,9 @@ def _searched(wish: _Wish, T: Array) -> Result:
     return replace(told, reason=reason, nearest=nearest, certificate=SEARCHED)
 
 
-def _batch(robot: Robot, results: list[Result], method: str) -> BatchResult:
-    """The answers as arrays."""
-    m, most, n = len(results), max((len(result) for result in results), default=0), robot.n
+def _batch(wish: _Wish, T: Array, results: list[Result], method: str) -> BatchResult:
+    """The answers as arrays; what comes nearest is sought for those that are looked at."""
+    m, most, n = len(results), max((len(result) for result in results), default=0), wish.robot.n
     q, position, angle = np.full((m, most, n), np.nan), np.full((m, most), np.nan), np.full((m, most), np.nan)
     inside = np.zeros((m, most), dtype=bool)
     for i, result in enumerate(results):
@@ -424,9 +437,15 @@ def _batch(robot: Robot, results: list[Result], method: str) -> BatchResult:
             q[i, k], inside[i, k] = solution.q, solution.within_limits
             position[i, k], angle[i, k] = solution.position_error, solution.angle_error
     count = np.array([len(result) for result in results], dtype=np.intp)
+
+    def single(i: int) -> Result:
+        if not results[i].solutions and results[i].nearest is None:
+            results[i] = replace(results[i], nearest=_nearest(wish, T[i]))
+        return results[i]
+
     return BatchResult(
         q, count, position, angle, inside, all(result.complete for result in results), method,
-        lambda i: results[i],
+        single,
         lambda: [solution.branch for result in results for solution in result.solutions],
         lambda i: results[i].reason,
     )  # fmt: skip

@@ -218,4 +218,4 @@ def test_what_has_no_answer_yet_is_refused():
     with pytest.raises(robokin.InputError, match="hold: joint dip hangs on pip"):
         robokin.solve_ik(arm, T, hold={0: 0.0})
     with pytest.raises(robokin.InputError, match="joint dip hangs on pip"):
-        robokin.to_convention(arm, "modified")
+        robokin.analyse_workspace(arm)
