@@ -14,7 +14,7 @@ WORKERS ?= $(shell $(PYTHON) -c 'import os; n = len(os.sched_getaffinity(0)) if 
 PYTEST  := python -m pytest --quiet --numprocesses $(WORKERS) --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow test-oldest test-newest lint fuzz bench completeness coverage wheel audit docs lock clean
+.PHONY: help demo test test-slow test-oldest test-newest lint fuzz bench completeness coverage corpora wheel audit docs lock clean
 
 help:            ## what can be made
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
@@ -75,6 +75,9 @@ completeness: $(VENV)/dev ## whether all solutions are all, counted; make comple
 
 coverage: $(VENV)/dev ## whether the bounds of sizes hold as often as they say; make coverage FULL=1 takes hours
 	FULL=$(FULL) $(BIN)/python -m benchmarks.coverage
+
+corpora: $(VENV)/dev ## whether descriptions from the wild are read right; make corpora DIR='DIR …' PEERS=SITE-PACKAGES
+	PYTHONPATH=$(PEERS) $(BIN)/python -m benchmarks.corpora $(DIR)
 
 wheel: $(VENV)/release ## build the wheel and the list of what it stands on (CycloneDX) in dist/, and run it alone
 	PYTHON=$(BIN)/python tests/wheel.sh

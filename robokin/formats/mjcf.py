@@ -105,7 +105,7 @@ class _Includes:
 
     def __init__(self, folder: Path | None, main: Path | None, size: int, document: XmlText) -> None:
         self.folder = folder
-        self.seen = {main.resolve()} if main is not None else set()
+        self.seen = {main} if main is not None else set()
         self.documents = {document.file: document}
         self.size = size
 
@@ -142,10 +142,13 @@ class _Includes:
             inside = False
         if not inside:
             raise node.error(f"found the file {shown(repr(name))} outside the main file's folder", "file")
-        if path in self.seen:
+        named = (
+            self.folder / parts
+        )  # by its name, as in MuJoCo: links of other names to one file are a way to repeat it
+        if named in self.seen:
             raise node.error(f"found the file {shown(repr(name))} twice, expected to include a file once", "file")
-        self.seen.add(path)
-        return self._read(node, self.folder / parts)
+        self.seen.add(named)
+        return self._read(node, named)
 
     def _read(self, node: XmlNode, path: Path) -> XmlNode:
         file = str(path)

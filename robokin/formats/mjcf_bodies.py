@@ -32,7 +32,9 @@ GENERATING = ("composite", "flexcomp", "replicate", "attach")
 
 READ = ("body", "joint", "freejoint", "site", "frame")
 
-MOST_BODIES, MOST_JOINTS, MOST_SITES = 5000, 2000, 5000
+MOST_BODIES = 5000
+MOST_JOINTS = 2000
+MOST_SITES = 5000
 """Bodies, joints and sites of one file; a humanoid with two hands has some 100."""
 
 
@@ -145,7 +147,7 @@ class MjcfBodies:
 
     def _read_body(self, node: XmlNode, standing: _Standing) -> None:
         if len(self.found) >= MOST_BODIES:
-            raise node.error(f"found more than {MOST_BODIES} bodies, expected a robot")
+            self._end(node, f"found more than {MOST_BODIES} bodies, expected a robot")
         name = self.names.take(node, "body", node.attributes.get("name", ""))
         pose = self.faults.attempt(np.eye(4), self.poses.pose_of, node)
         childclass = self.faults.attempt(
@@ -170,7 +172,7 @@ class MjcfBodies:
             raise node.error("found a joint of the world, expected joints in bodies")
         self.joints += 1
         if self.joints > MOST_JOINTS:
-            raise node.error(f"found more than {MOST_JOINTS} joints, expected a robot")
+            self._end(node, f"found more than {MOST_JOINTS} joints, expected a robot")
         full = self.classes.filled(node, standing.childclass) if node.tag == "joint" else node
         types = ("hinge", "slide", "ball", "free")
         kind = "free" if node.tag == "freejoint" else choice_of(full, "type", types, "hinge")
@@ -225,10 +227,15 @@ class MjcfBodies:
         place = node.place_of(key)
         self.notes.append(Note(message, place.file, place.line, place.column))
 
+    def _end(self, node: XmlNode, message: str) -> None:
+        """Raise DescriptionError for what ends the reading: more of its kind would be no news."""
+        self.faults.add(node.error(message))
+        self.faults.stop()
+
     def _read_site(self, node: XmlNode, standing: _Standing) -> None:
         self.sites += 1
         if self.sites > MOST_SITES:
-            raise node.error(f"found more than {MOST_SITES} sites, expected a robot")
+            self._end(node, f"found more than {MOST_SITES} sites, expected a robot")
         name = self.names.take(node, "site", node.attributes.get("name", ""))
         full = self.classes.filled(node, standing.childclass)
         pose = self._along(full) if full.attributes.get("fromto", "").strip() else self.poses.pose_of(full)

@@ -48,7 +48,7 @@ def values_of(node: XmlNode, key: str, count: int | None) -> tuple[float, ...] |
             f"found '{shown(text)}' as '{key}', expected numbers with blanks and no commas between them", key
         )
     values = numbers_at(text, node.place_of(key), f"'{key}'", count, [])
-    if any(abs(value) > FARTHEST for value in values):
+    if max(map(abs, values), default=0.0) > FARTHEST:
         raise node.error(f"found '{shown(text)}' as '{key}', expected numbers of at most {FARTHEST:g}", key)
     return values
 

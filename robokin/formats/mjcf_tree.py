@@ -28,6 +28,9 @@ TYPES = {"hinge": "revolute", "slide": "prismatic"}
 NOT_HELD = ("tendon", "flex", "flexvert", "flexstrain", "distance")
 """Equalities that no joint's value follows from."""
 
+MOST_BESIDE = 100_000
+"""Values of a keyframe that are read before their number is judged."""
+
 MOST_SHOWN = 8
 """Names that a note lists."""
 
@@ -59,7 +62,7 @@ class MjcfTree:
         self.link_of = {self.root: 0}
         self.links = [self.bodies[self.root].name]
         for number, body in enumerate(self.bodies):
-            if number != self.root and self.tops[number] == self.root:
+            if number != self.root and self.tops[number] == self.root and body.parent in self.link_of:
                 self.faults.attempt(None, self._add, number, body)
         self._say_what_is_left_out()
         couplings = [found for node in equalities if (found := self.faults.attempt(None, self._equality, node))]
@@ -261,7 +264,11 @@ class MjcfTree:
         places = [self.addresses[number] for number in graph.variables]
         found: dict[str, Array] = {}
         for node in keys:
-            name, qpos = node.attributes.get("name", ""), values_of(node, "qpos", None)
+            name, text = node.attributes.get("name", ""), node.attributes.get("qpos", "")
+            count = len(text.split())
+            if count > max(values, MOST_BESIDE):  # counted before they are read: there may be millions
+                raise node.error(f"found {counted(count, 'value')} in qpos, expected {values}", "qpos")
+            qpos = values_of(node, "qpos", None)
             if not name or qpos is None or any(place < 0 for place in places):
                 continue
             if len(qpos) != values:

@@ -36,8 +36,11 @@ AXES = {
 
 SHORTEST_AXIS = 1e-12
 
-MOST_LINKS, MOST_JOINTS = 5000, 2000
-"""Links and joints of one file; a humanoid with two hands has some 100."""
+MOST_LINKS = 5000
+MOST_JOINTS = 2000
+MOST_FRAMES = 20_000
+"""Links, joints and frames of one file, models within models with the frames; a humanoid with two hands has some 100
+links."""
 
 
 @dataclass(eq=False)
@@ -78,6 +81,7 @@ class SdfModel:
         self.places = SdfPlaces(self.top, self.world)
         self.scope = SdfScope("", self.top)
         self.top.inside = self.scope
+        _refuse_too_many(node)
         self._collect(node, self.scope)
         faults.stop()
         self.joints = [joint for frame in self.joint_frames if (joint := faults.attempt(None, self._joint, frame))]
@@ -101,9 +105,6 @@ class SdfModel:
         if self.version < (1, 7):
             towards = ""  # until then what a pose was in was fixed
         frame = SdfFrame(scope.prefix + name, node.tag, node, scope, pose, towards, scope.own)
-        for kind, found, most in (("link", self.links, MOST_LINKS), ("joint", self.joint_frames, MOST_JOINTS)):
-            if kind == node.tag and len(found) >= most:
-                raise node.error(f"found more than {most} {kind}s, expected a robot")
         if node.tag == "model":
             self._add_model(node, frame, scope, name)
         elif node.tag == "link":
@@ -175,6 +176,22 @@ class SdfModel:
         if self.version >= (1, 5) and _text_in(axis, "use_parent_model_frame", "false") not in ("true", "1"):
             return None
         return frame.scope.find(MODEL, axis)
+
+
+def _refuse_too_many(model: XmlNode) -> None:
+    """Raise DescriptionError for a model of far more parts than a robot has, those of models within it counted."""
+    counts = {"link": 0, "joint": 0, "frame": 0, "model": 0}
+    most = {"link": MOST_LINKS, "joint": MOST_JOINTS, "frame": MOST_FRAMES, "model": MOST_FRAMES}
+    waiting = [model]
+    while waiting:
+        for node in waiting.pop().children:
+            if node.tag not in counts:
+                continue
+            counts[node.tag] += 1
+            if counts[node.tag] > most[node.tag]:
+                raise node.error(f"found more than {most[node.tag]} {node.tag}s, expected a robot")
+            if node.tag == "model":
+                waiting.append(node)
 
 
 def _text_in(node: XmlNode, tag: str, otherwise: str = "") -> str:

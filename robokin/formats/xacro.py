@@ -16,9 +16,9 @@ from pathlib import Path
 from robokin.errors import DescriptionError, ExpressionError, InputError, did_you_mean, shown
 from robokin.files import open_path, read_up_to
 from robokin.formats.urdf import tree_of_urdf
-from robokin.formats.xacro_expressions import XacroValue, xacro_typed
-from robokin.formats.xacro_folders import XacroFolders
+from robokin.formats.xacro_folders import MOST_TABLE_BYTES, TABLES, XacroFolders
 from robokin.formats.xacro_scope import XacroProperty, XacroScope, XacroTexts
+from robokin.formats.xacro_tables import XacroList, XacroTable, XacroValue, xacro_table, xacro_typed
 from robokin.formats.xml_tree import MAX_XML_BYTES, XmlNode, XmlText, read_xml
 from robokin.model.tree import Tree
 
@@ -76,11 +76,13 @@ class XacroExpansion:
         self.asked: set[str] = set()
         self.texts: dict[str, XmlText] = {}
         self.evaluator = XacroTexts(
-            {"find": self.find, "arg": self.argument, "optenv": self.environment, "dirname": self.folder}
+            {"find": self.find, "arg": self.argument, "optenv": self.environment, "dirname": self.folder},
+            self.load,
         )
         self.steps = self.includes = self.depth = 0
         self.parameters: dict[XmlNode, list[tuple[str, str, tuple[str, str] | None]]] = {}
         self.open_files: list[str] = [str(main.resolve())]
+        self.tables: dict[Path, XacroValue] = {}
 
     def robot(self, root: XmlNode) -> XmlNode:
         """The `robot` element with all that is in it carried out. Raises DescriptionError."""
@@ -162,6 +164,19 @@ class XacroExpansion:
         """The folder of the file that a node stands in."""
         return str(Path(node.document.file).parent)
 
+    def load(self, name: str, node: XmlNode) -> XacroValue:
+        """What is in a YAML file, which is read once."""
+        try:
+            path = self.folders.included(name, Path(node.document.file).resolve().parent, TABLES)
+            if path not in self.tables:
+                text = self.folders.read(path, "a YAML file", MOST_TABLE_BYTES).decode("utf-8-sig", "replace")
+                self.tables[path] = xacro_table(text, str(path))
+        except DescriptionError as error:
+            raise ExpressionError(f"{error.file}:{error.line}: {error.message}") from None
+        except InputError as error:
+            raise ExpressionError(str(error)) from None
+        return self.tables[path]
+
     # Words of xacro.
 
     def declare(self, node: XmlNode, scope: XacroScope) -> list[XmlNode]:
@@ -205,6 +220,8 @@ class XacroExpansion:
             raise node.error(f"found <{node.tag}> without 'value', expected it")
         value: XacroValue = self.evaluator.value_of(node, "value", scope)
         value = xacro_typed(value) if isinstance(value, str) else value
+        if isinstance(value, XacroTable | XacroList):
+            raise node.error("found a table or a list as a condition, expected true, false or a number", "value")
         if isinstance(value, str):
             raise node.error(f"found '{shown(value)}' as a condition, expected true, false or a number", "value")
         return self.expand_all(node.children, scope) if bool(value) == (node.tag == "xacro:if") else []

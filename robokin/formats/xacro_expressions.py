@@ -3,10 +3,13 @@
     value   = either [ if either else value ]      either = both { or both }      both = negated { and negated }
     negated = not negated | sum { (== | != | < | <= | > | >=) sum }
     sum     = product { (+ | -) product }          product = signed { (* | / | // | %) signed }
-    signed  = { - | + } power                      power   = atom [ ** signed ]
-    atom    = number | string | True | False | name | function ( value { , value } ) | ( value )
+    signed  = { - | + } power                      power   = part [ ** signed ]
+    part    = atom { [ value ] | . name }          atom    = number | string | True | False | name | ( value )
+                                                           | function ( value { , value } ) | dict ( name = value … )
+                                                           | [ value { , value } ]
 
-Values are numbers, strings and truths, with Python's meaning of the operators. Angles are in radians.
+and `sum in sum`. Values are numbers, strings and truths, with Python's meaning of the operators, and the tables and
+lists of YAML files, of which parts are taken. Angles are in radians.
 """
 
 from __future__ import annotations
@@ -17,8 +20,18 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from robokin.errors import ExpressionError, did_you_mean, shown
-
-XacroValue = float | int | str | bool
+from robokin.formats.xacro_tables import (
+    XacroAbsent,
+    XacroList,
+    XacroTable,
+    XacroValue,
+    absent_of,
+    as_xacro_number,
+    part_of_xacro,
+    present,
+    xacro_text,
+    xacro_typed,
+)
 
 MAX_EXPRESSION = 2000
 MAX_STRING = 20_000
@@ -48,6 +61,12 @@ XACRO_FUNCTIONS: dict[str, Callable[..., XacroValue]] = {
     "bool": bool,
     "len": len,
 }
+METHODS: dict[str, Callable[..., XacroValue]] = {
+    **{name: getattr(str, name) for name in ("lower", "upper", "strip", "find", "startswith", "endswith")},
+    "split": lambda text, *at: XacroList(tuple(str.split(text, *at))),
+}
+"""Of strings; none of them makes more of a text than there is."""
+
 CONSTANTS: dict[str, XacroValue] = {
     "pi": math.pi,
     "tau": math.tau,
@@ -57,35 +76,30 @@ CONSTANTS: dict[str, XacroValue] = {
     "true": True,
     "false": False,
 }
-ELSEWHERE = ("load_yaml", "load_json", "dict", "list", "tuple", "set", "eval", "exec", "open", "lambda", "for")
+LOADERS = ("load_yaml", "xacro.load_yaml")
+ELSEWHERE = ("load_json", "list", "tuple", "set", "eval", "exec", "open", "lambda", "for")
 """Names of Python's and xacro's that are refused with a word on what to do."""
 
 WAY_OUT = "nothing of a xacro file is run as Python; make a URDF of it with ROS's own xacro, and give that"
 
-WORDS = {"and", "or", "not", "if", "else"}
+WORDS = {"and", "or", "not", "if", "else", "in"}
+
+
+def _no_file(name: str) -> XacroValue:
+    """What is loaded where no file is."""
+    raise ExpressionError(f"found the file '{shown(name)}' in an expression of no file, expected none")
 
 
 @dataclass(frozen=True)
 class XacroNames:
-    """The names that expressions may use: `lookup` gives a value, None for no name; `known` lists all for messages."""
+    """The names that expressions may use: `lookup` gives a value, None for no name; `known` lists all for messages.
+
+    `load` gives what is in a YAML file.
+    """
 
     known: Callable[[], Collection[str]] = tuple
     lookup: Callable[[str], XacroValue | None] = lambda name: None
-
-
-def xacro_text(value: XacroValue) -> str:
-    """A value as it stands in an attribute."""
-    return value if isinstance(value, str) else repr(value)
-
-
-def xacro_typed(text: str) -> XacroValue:
-    """What a text stands for in an expression: a number, a truth, else the text."""
-    word = text.strip()
-    if re.fullmatch(r"[+-]?[0-9]{1,15}", word):
-        return int(word)
-    if re.fullmatch(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", word):
-        return float(word)
-    return {"true": True, "false": False}.get(word.lower(), text)
+    load: Callable[[str], XacroValue] = _no_file
 
 
 def evaluate_xacro(text: str, names: XacroNames) -> XacroValue:
@@ -93,9 +107,7 @@ def evaluate_xacro(text: str, names: XacroNames) -> XacroValue:
     if len(text) > MAX_EXPRESSION:
         raise ExpressionError(f"found an expression of {len(text)} characters, expected at most {MAX_EXPRESSION}")
     parser = _XacroParser(_pieces(text), names)
-    value = parser.value()
-    if parser.pieces[parser.at][1] in ("[", "."):
-        raise ExpressionError("found a part taken of a value, expected numbers, strings and names: " + WAY_OUT)
+    value = present(parser.value())
     if parser.pieces[parser.at][0] != "end":
         raise ExpressionError(f"found '{shown(parser.pieces[parser.at][1])}', expected the end of the expression")
     return value
@@ -148,14 +160,14 @@ class _XacroParser:
         result = self.both()
         while self.accept("or"):
             other = self.both()
-            result = result or other
+            result = result if isinstance(result, XacroAbsent) else result or other
         return result
 
     def both(self) -> XacroValue:
         result = self.negated()
         while self.accept("and"):
             other = self.negated()
-            result = result and other
+            result = result if isinstance(result, XacroAbsent) else result and other
         return result
 
     def negated(self) -> XacroValue:
@@ -165,12 +177,16 @@ class _XacroParser:
         first = self.sum()
         result: XacroValue = first
         compared = False
-        while sign := self.accept("==", "!=", "<=", ">=", "<", ">"):
+        while sign := self.accept("==", "!=", "<=", ">=", "<", ">", "in"):
             second = self.sum()
+            if (absent := absent_of(first, second)) is not None:
+                return absent
             holds = _compare(sign, first, second)
             result = (bool(result) and holds) if compared else holds
             first, compared = second, True
-        return (not result if negative else bool(result)) if any_sign else result
+        if not any_sign or isinstance(result, XacroAbsent):
+            return result
+        return not result if negative else bool(result)
 
     def sum(self) -> XacroValue:
         result = self.product()
@@ -189,12 +205,13 @@ class _XacroParser:
         while sign := self.accept("-", "+"):
             negative, any_sign = negative ^ (sign == "-"), True
         result = self.power()
-        if any_sign and isinstance(result, str):
-            raise ExpressionError(f"found a sign before '{shown(result)}', expected a number")
-        return -result if negative and not isinstance(result, str) else result
+        if not any_sign or isinstance(result, XacroAbsent):
+            return result
+        number = as_xacro_number(result, "a sign before")
+        return -number if negative else number
 
     def power(self) -> XacroValue:
-        base = self.atom()
+        base = self.part()
         if not self.accept("**"):
             return base
         self.depth += 1
@@ -203,6 +220,37 @@ class _XacroParser:
         result = _computed("**", base, self.signed())
         self.depth -= 1
         return result
+
+    def part(self) -> XacroValue:
+        result = self.atom()
+        while sign := self.accept("[", "."):
+            if sign == "[":
+                key = present(self.value())
+                if not self.accept("]"):
+                    raise ExpressionError("found no ']', expected the end of the brackets")
+                result = part_of_xacro(result, key)
+                continue
+            kind, text = self.pieces[self.at]
+            self.at += 1
+            if kind != "name":
+                raise ExpressionError(f"found a part taken of a value, expected [key] or .key: {WAY_OUT}")
+            *keys, last = text.split(".")
+            for key in keys:
+                result = part_of_xacro(result, key)
+            result = self.method(result, last) if self.accept("(") else part_of_xacro(result, last)
+        return result
+
+    def method(self, value: XacroValue, name: str) -> XacroValue:
+        """What a method of a string gives, after its bracket."""
+        arguments = self.values(")")
+        if (absent := absent_of(value, *arguments)) is not None:
+            return absent
+        if not isinstance(value, str) or name not in METHODS:
+            raise ExpressionError(f"found .{shown(name)}(…), expected a method of strings such as lower(): {WAY_OUT}")
+        try:
+            return METHODS[name](value, *arguments)
+        except (TypeError, ValueError):
+            raise ExpressionError(f"found .{name}(…) of '{shown(value)}', expected other arguments") from None
 
     def atom(self) -> XacroValue:
         kind, text = self.pieces[self.at]
@@ -215,18 +263,26 @@ class _XacroParser:
             return text[1:-1]
         if kind == "name" and text not in WORDS:
             return self.call(text) if self.accept("(") else self.name(text)
+        if text == "[":
+            return XacroList(tuple(self.values("]")))
         if text == "(":
             result = self.value()
             if not self.accept(")"):
                 raise ExpressionError("found no ')', expected the end of the parentheses")
             return result
         raise ExpressionError(
-            f"found '{shown(text)}', expected a value; lists and dictionaries are not read: {WAY_OUT}"
+            f"found '{shown(text)}', expected a value; of Python's literals only lists are read: {WAY_OUT}"
         )
 
     def name(self, name: str) -> XacroValue:
         value = self.names.lookup(name)
         if value is not None:
+            return value
+        first, _, keys = name.partition(".")
+        value = self.names.lookup(first) if keys else None
+        if isinstance(value, XacroTable):
+            for key in keys.split("."):
+                value = part_of_xacro(value, key)
             return value
         plain = name.removeprefix("math.")
         if plain in CONSTANTS:
@@ -236,27 +292,65 @@ class _XacroParser:
 
     def call(self, name: str) -> XacroValue:
         plain = name.removeprefix("math.").removeprefix("xacro.").removeprefix("python.")
-        if plain not in XACRO_FUNCTIONS:
+        if plain == "dict":
+            return self.table()
+        owner, _, method = name.rpartition(".")
+        if owner and method in METHODS:
+            return self.method(self.name(owner), method)
+        if plain not in XACRO_FUNCTIONS and name not in LOADERS:
             if plain in ELSEWHERE or "." in plain:
                 raise ExpressionError(
                     f"found {shown(name)}(…), expected numbers, strings and functions such as radians(…): {WAY_OUT}"
                 )
             hint = did_you_mean(plain, XACRO_FUNCTIONS) or ", expected one such as radians, sin or sqrt"
             raise ExpressionError(f"found the unknown function '{shown(name)}'{hint}")
-        arguments = [] if self.accept(")") else [self.value()]
-        while arguments and not self.accept(")"):
-            if not self.accept(","):
-                raise ExpressionError(f"found no ')' after {name}(…, expected it")
-            arguments.append(self.value())
+        arguments = self.values(")")
+        if (absent := absent_of(*arguments)) is not None:
+            return absent
+        if name in LOADERS:
+            if len(arguments) != 1 or not isinstance(arguments[0], str):
+                raise ExpressionError(f"found {name}(…), expected the name of one YAML file")
+            return self.names.load(arguments[0])
         try:
             return _bounded(XACRO_FUNCTIONS[plain](*arguments))
         except (TypeError, ValueError, ZeroDivisionError, OverflowError):
-            where = ", ".join(shown(xacro_text(argument)) for argument in arguments)
+            plainly = [a for a in arguments if not isinstance(a, XacroTable | XacroList)]
+            where = ", ".join(shown(xacro_text(argument)) for argument in plainly)
             raise ExpressionError(f"found {name}({where}), expected arguments for which it has a value") from None
+
+    def values(self, end: str) -> list[XacroValue]:
+        """Values with commas between them, up to a bracket."""
+        found: list[XacroValue] = []
+        while not self.accept(end):
+            if found and not self.accept(","):
+                raise ExpressionError(f"found no '{end}' after {len(found)} values, expected it")
+            if found and self.accept(end):
+                break
+            found.append(self.value())
+        return found
+
+    def table(self) -> XacroTable:
+        """The table that is written `dict(name=value, …)`, after its bracket."""
+        entries: dict[str, XacroValue] = {}
+        while not self.accept(")"):
+            kind, name = self.pieces[self.at]
+            self.at += 1
+            if kind != "name" or not self.accept("="):
+                raise ExpressionError(f"found '{shown(name)}' in dict(…), expected name=value: {WAY_OUT}")
+            entries[name] = present(self.value())
+            if not self.accept(",") and self.pieces[self.at][1] != ")":
+                raise ExpressionError("found no ')' after dict(…, expected it")
+        return XacroTable(entries)
 
 
 def _compare(sign: str, a: XacroValue, b: XacroValue) -> bool:
     """a == b and the like."""
+    if sign == "in":
+        if isinstance(b, str) and isinstance(a, str):
+            return a in b
+        if isinstance(b, XacroTable | XacroList):
+            return a in (b.entries if isinstance(b, XacroTable) else b.items)
+        raise ExpressionError("found 'in' before no table, expected a string, a table or a list after it")
     if sign in ("==", "!="):
         return (a == b) == (sign == "==")
     try:
@@ -267,11 +361,11 @@ def _compare(sign: str, a: XacroValue, b: XacroValue) -> bool:
 
 def _computed(sign: str, a: XacroValue, b: XacroValue) -> XacroValue:
     """a + b and the like. Raises ExpressionError where there is no such value."""
-    if isinstance(a, str) or isinstance(b, str):
-        if sign == "+" and isinstance(a, str) and isinstance(b, str):
-            return _bounded(a + b)
-        word = shown(a if isinstance(a, str) else str(b))
-        raise ExpressionError(f"found the string '{word}' beside '{sign}', expected numbers")
+    if (absent := absent_of(a, b)) is not None:
+        return absent
+    if sign == "+" and isinstance(a, str) and isinstance(b, str):
+        return _bounded(a + b)
+    a, b = as_xacro_number(a, f"'{sign}' beside"), as_xacro_number(b, f"'{sign}' beside")
     try:
         if sign == "**":
             small = isinstance(a, int) and isinstance(b, int) and 0 <= b < 64 and abs(a) < 1 << 20
@@ -289,7 +383,7 @@ def _bounded(value: XacroValue) -> XacroValue:
         if len(value) > MAX_STRING:
             raise ExpressionError(f"found a string of {len(value)} characters, expected at most {MAX_STRING}")
         return value
-    if isinstance(value, bool):
+    if isinstance(value, bool | XacroTable | XacroList | XacroAbsent):
         return value
     if isinstance(value, int) and abs(value) > LARGEST_WHOLE:
         value = float(value) if abs(value) < 1 << 1000 else math.inf

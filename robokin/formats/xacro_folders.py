@@ -12,8 +12,14 @@ from robokin.files import open_path, read_up_to
 LEVELS = 6
 """Folders above the file in which packages are sought."""
 
-ENDINGS = (".xacro", ".urdf", ".xml")
+ENDINGS = (".xacro", ".urdf", ".xml", ".gazebo")
 """What an included file's name ends with."""
+
+TABLES = (".yaml", ".yml")
+"""What the name of a file with tables ends with."""
+
+MOST_TABLE_BYTES = 1 << 20
+"""Bytes of a file with tables."""
 
 MOST_BYTES = 1 << 24
 """Bytes of all files together."""
@@ -45,7 +51,7 @@ class XacroFolders:
     def _above(self) -> list[Path]:
         return [self.home, *self.home.parents][: LEVELS + 1]
 
-    def included(self, name: str, folder: Path) -> Path:
+    def included(self, name: str, folder: Path, endings: tuple[str, ...] = ENDINGS) -> Path:
         """The file that a name means in a folder, its links followed."""
         try:
             path = (folder / name).resolve()
@@ -59,14 +65,16 @@ class XacroFolders:
                 f"found '{shown(name)}' outside the file's own folder and its packages, expected a file within them, "
                 "or its folder by --package NAME=FOLDER"
             )
-        if not there or path.suffix not in ENDINGS:
-            raise InputError(f"found no file '{shown(name)}', expected one that ends in {', '.join(ENDINGS)}")
+        if not there or path.suffix not in endings:
+            raise InputError(f"found no file '{shown(name)}', expected one that ends in {', '.join(endings)}")
         return path
 
-    def read(self, path: Path) -> bytes:
-        """The bytes of a file."""
-        with open_path(str(path), "a xacro file") as stream:
-            data = read_up_to(stream, str(path), self.left, "a xacro file")
+    def read(self, path: Path, expected: str = "a xacro file", most: int = MOST_BYTES) -> bytes:
+        """The bytes of a file, so many at most."""
+        with open_path(str(path), expected) as stream:
+            data = read_up_to(stream, str(path), min(self.left, most), expected)
+        if len(data) > most:
+            raise InputError(f"found a file over {most >> 20} MiB, expected {expected} of a robot")
         self.left -= len(data)
         if self.left < 0:
             raise InputError(f"found files over {MOST_BYTES >> 20} MiB, expected the descriptions of a robot")

@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from robokin.errors import DescriptionError, ExpressionError
-from robokin.formats.xacro_expressions import XacroNames, XacroValue, evaluate_xacro, xacro_text, xacro_typed
+from robokin.formats.xacro_expressions import XacroNames, evaluate_xacro
+from robokin.formats.xacro_tables import XacroValue, xacro_text, xacro_typed
 from robokin.formats.xml_tree import XmlNode
 
 MOST_TEXT = 1 << 22
@@ -89,15 +90,24 @@ class XacroScope:
 
 
 class XacroTexts:
-    """Evaluates the texts of attributes: `${…}` by the evaluator, `$(…)` by the words there are."""
+    """Evaluates the texts of attributes: `${…}` by the evaluator, `$(…)` by the words there are.
 
-    def __init__(self, commands: Mapping[str, Callable[[str, XmlNode], str]]) -> None:
+    load: what is in the YAML file of a name.
+    """
+
+    def __init__(
+        self, commands: Mapping[str, Callable[[str, XmlNode], str]], load: Callable[[str, XmlNode], XacroValue]
+    ) -> None:
         self.commands = commands
+        self.load = load
         self.computed = 0
 
     def text_of(self, node: XmlNode, attribute: str, scope: XacroScope) -> str:
         """An attribute's text. Raises DescriptionError at it."""
-        return xacro_text(self.value_of(node, attribute, scope))
+        try:
+            return xacro_text(self.value_of(node, attribute, scope))
+        except ExpressionError as error:
+            raise node.error(error.message, attribute) from None
 
     def value_of(self, node: XmlNode, attribute: str, scope: XacroScope) -> XacroValue:
         """An attribute's value: that of the expression where it is nothing else, else its text."""
@@ -126,7 +136,7 @@ class XacroTexts:
             elif word in ("${", "$("):
                 at = _end_of(text, start + 1)
                 inner = xacro_text(self.evaluated(text[start + 2 : at - 1], node, scope))
-                values.append(self.expression(inner, scope) if word == "${" else self.command(inner, node, scope))
+                values.append(self.expression(inner, scope, node) if word == "${" else self.command(inner, node, scope))
             else:
                 values.append("$")
                 at = start + 1
@@ -144,10 +154,23 @@ class XacroTexts:
         if len(text) > MAX_VALUE or self.computed > MOST_TEXT:
             raise ExpressionError("found texts that grow without end, expected those of a robot")
 
-    def expression(self, text: str, scope: XacroScope) -> XacroValue:
-        """The value of what stands between `${` and `}`."""
+    def argument(self, name: str, node: XmlNode) -> XacroValue | None:
+        """The value of an argument, which `$(eval …)` knows by its name; None where there is none."""
+        try:
+            return xacro_typed(self.commands["arg"](name, node))
+        except ExpressionError:
+            return None
+
+    def expression(self, text: str, scope: XacroScope, node: XmlNode, arguments: bool = False) -> XacroValue:
+        """The value of what stands between `${` and `}`; of `$(eval …)`, where arguments are names too."""
         self.spend(EXPRESSION * len(text))
-        return evaluate_xacro(text, XacroNames(scope.all_names, lambda name: self.lookup(name, scope)))
+
+        def known(name: str) -> XacroValue | None:
+            value = self.lookup(name, scope)
+            return self.argument(name, node) if value is None and arguments else value
+
+        names = XacroNames(scope.all_names, known, lambda name: self.load(name, node))
+        return evaluate_xacro(text, names)
 
     def lookup(self, name: str, scope: XacroScope) -> XacroValue | None:
         """The value of a name, None where there is none."""
@@ -176,7 +199,7 @@ class XacroTexts:
         """What `$(…)` stands for."""
         word, _, rest = text.strip().partition(" ")
         if word == "eval":
-            return self.expression(rest, scope)
+            return self.expression(rest, scope, node, arguments=True)
         if word not in self.commands:
             raise ExpressionError(
                 f"found $({text.strip()[:40]}), expected $(find package), $(arg name) or $(eval …): nothing else is "

@@ -16,6 +16,9 @@ NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 COMMA_AFTER = re.compile(r",(?=\s|$)")
 """A comma that can only part numbers: one between two digits may be meant as a decimal point."""
 
+PLAIN = re.compile(r"[0-9eE+.\- \t\r\n\f\v]+")
+"""Of these characters Python's float takes what is a number here, and nothing else."""
+
 BLANK = re.compile(r"[ \t\r\n\f\v]+")
 
 
@@ -36,6 +39,8 @@ def numbers_at(text: str, place: FilePlace, what: str, count: int | None, notes:
 
     Commas followed by a blank are taken as such, with a note. Raises DescriptionError at the place.
     """
+    if (plain := _plain_numbers(text)) is not None and count in (None, len(plain)):
+        return plain
     parts = BLANK.split(COMMA_AFTER.sub(" ", text).strip(" \t\r\n\f\v")) if text.strip() else []
     if count is not None and len(parts) != count:
         comma = ", with blanks and no commas between them" if "," in text else ""
@@ -44,6 +49,17 @@ def numbers_at(text: str, place: FilePlace, what: str, count: int | None, notes:
         message = f"found commas in {what} ('{shown(text)}'), taken as blanks: other programs refuse them"
         notes.append(Note(message, place.file, place.line, place.column))
     return tuple(number_at(part, place, what) for part in parts)
+
+
+def _plain_numbers(text: str) -> tuple[float, ...] | None:
+    """The finite numbers in a text without anything else; None where there is more to say of it."""
+    if not PLAIN.fullmatch(text):
+        return None
+    try:
+        numbers = tuple(map(float, text.split()))
+    except ValueError:
+        return None
+    return numbers if all(map(math.isfinite, numbers)) else None
 
 
 def number_of(node: XmlNode, attribute: str, default: float | None = None) -> float:

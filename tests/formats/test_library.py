@@ -59,7 +59,7 @@ def test_a_name_stands_once_and_every_file_in_the_folder_of_its_kind():
     assert len(set(library_names())) == len(library_names())
     assert sorted(library_folder().rglob("*.yaml")) == sorted(library_files())
     assert {path.name for path in library_folder().iterdir() if path.is_dir()} == set(KINDS)
-    kinds = {"arms": Robot, "hands": Robot | Tree, "mechanisms": Mechanism, "bases": WheeledBase}
+    kinds = {"arms": Robot | Tree, "hands": Robot | Tree, "mechanisms": Mechanism, "bases": WheeledBase}
     for path in library_files():
         assert isinstance(load_any(path.stem), kinds[path.parent.name])
 

@@ -169,6 +169,31 @@ def test_a_mistake_is_a_sentence_with_its_place(text, words):
     assert error.excerpt
 
 
+def test_a_file_is_included_once_by_each_of_its_names(tmp_path):
+    (tmp_path / "geom.xml").write_text('<mujocoinclude><site name="s"/></mujocoinclude>')
+    (tmp_path / "again.xml").symlink_to("geom.xml")
+    main = tmp_path / "main.xml"
+    two = '<body name="a"><joint/><include file="geom.xml"/></body><body name="b"><include file="{}"/></body>'
+    main.write_text(mjcf(two.format("again.xml").replace("</body>", '<site name="t"/></body>', 1)))
+    with pytest.raises(DescriptionError, match="site 's' twice"):  # read twice, as it says: names are another matter
+        read_mjcf(main)
+    (tmp_path / "geom.xml").write_text("<mujocoinclude><geom/></mujocoinclude>")
+    assert read_mjcf(main).graph.links == ("world", "a", "b")
+    main.write_text(mjcf(two.format("geom.xml")))
+    with pytest.raises(DescriptionError, match=r"'geom\.xml' twice"):
+        read_mjcf(main)
+    (tmp_path / "geom.xml").write_text('<mujocoinclude><include file="again.xml"/></mujocoinclude>')
+    main.write_text(mjcf(two.format("none.xml")))
+    with pytest.raises(DescriptionError, match=r"'again\.xml' twice"):  # one that includes itself ends too
+        read_mjcf(main)
+
+
+def test_what_stands_on_a_body_that_is_refused_is_no_mistake_of_its_own():
+    error = refusal(mjcf('<body name="a"><joint type="ball"/><body name="b"><joint/><body name="c"/></body></body>'))
+    assert "ball" in error.message
+    assert not error.others
+
+
 def test_includes_are_read_from_the_folder_once_and_nowhere_else(tmp_path):
     (tmp_path / "part.xml").write_text('<mujocoinclude><body name="a"><joint/></body></mujocoinclude>')
     (tmp_path.parent / "outside.xml").write_text("<mujocoinclude/>")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 import yaml
@@ -57,6 +58,18 @@ def errors(value, schema, where="$"):
             yield from errors(inner, schema.get("items", {}), f"{where}[{i}]")
 
 
+class EditorLoader(yaml.SafeLoader):
+    """YAML 1.2, as editors have it: `on` is a word, and only `true` and `false` are flags."""
+
+    yaml_implicit_resolvers = {  # noqa: RUF012
+        first: [(tag, words) for tag, words in found if not tag.endswith(":bool")]
+        for first, found in yaml.SafeLoader.yaml_implicit_resolvers.items()
+    }
+
+
+EditorLoader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile("true|false"), list("tf"))
+
+
 def test_the_schema_is_json_and_holds_every_definition_that_it_names():
     text = json.dumps(SCHEMA)
     assert json.loads(text) == SCHEMA
@@ -66,7 +79,7 @@ def test_the_schema_is_json_and_holds_every_definition_that_it_names():
 
 @pytest.mark.parametrize("path", sweep(library_files(), 4), ids=lambda path: path.stem)
 def test_the_library_keeps_to_the_schema(path):
-    value = yaml.safe_load(path.read_text(encoding="utf-8"))
+    value = yaml.load(path.read_text(encoding="utf-8"), Loader=EditorLoader)
     assert list(errors(value, SCHEMA)) == []
 
 

@@ -9,6 +9,7 @@ from robokin.errors import DescriptionError, ExpressionError, InputError
 from robokin.formats.urdf import read_urdf
 from robokin.formats.xacro import read_xacro
 from robokin.formats.xacro_expressions import XacroNames, evaluate_xacro
+from robokin.formats.xacro_tables import xacro_table
 
 ARM = """
 <xacro:macro name="arm_segment" params="name parent length:=0.5 type:='revolute' *limits **extra">
@@ -118,6 +119,9 @@ def test_includes_and_packages(tmp_path):
     include = '<link name="b"/><xacro:include filename="$(find arm_description)/urdf/links.xacro"/>'
     assert read(package / "robots", include).graph.links == ("b", "a")
     assert read(tmp_path / "far", include, packages={"arm_description": str(package)}).n == 1
+    write(package / "urdf" / "arm.gazebo", JOINT)
+    gazebo = '<link name="a"/><link name="b"/><xacro:include filename="$(find arm_description)/urdf/arm.gazebo"/>'
+    assert read(package / "robots", gazebo).n == 1
     (package / "package.xml").write_text("<package><name>other_name</name></package>")
     assert read(package / "robots", include.replace("arm_d", "other_name").replace("escription", "")).n == 1
 
@@ -158,11 +162,20 @@ def test_an_error_in_an_included_file_names_that_file(tmp_path):
     [
         ("${gone + 1}", "'gone'"),
         ("${1/0}", "1 / 0"),
-        ("${xacro.load_yaml('x')}", "nothing of a xacro file is run"),
-        ("${dict(a=1)}", "nothing of a xacro file is run"),
+        ("${xacro.load_yaml('x')}", "no file 'x'"),
+        ("${xacro.load_json('x')}", "nothing of a xacro file is run"),
+        ("${dict(a=1)}", "table or a list in a text"),
+        ("${dict(1)}", "name=value"),
+        ("${{'a': 1}['a']}", "only lists are read"),
         ("${().__class__}", "expected a value"),
         ("${x.__class__}", "unknown name"),
-        ("${[x for x in (1,)]}", "lists"),
+        ("${[x for x in (1,)]}", "unknown name 'x'"),
+        ("${[1 for x in (1,)]}", "no ']'"),
+        ("${'a'.__class__}", "part taken of a list"),
+        ("${'a'.format(1)}", "method of strings"),
+        ("${'{0.__class__}'.format(1)}", "method of strings"),
+        ("${'a b'.split().__class__}", "part taken of a list"),
+        ("${pi.real}", "unknown name"),
         ("${open('/etc/passwd')}", "nothing of a xacro file is run"),
         ("${__import__('os')}", "unknown function"),
         ("${p['key']}", "unknown name"),
@@ -280,3 +293,166 @@ def test_random_sums_and_products_have_pythons_values(seed):
 def test_what_is_no_expression_is_refused(text):
     with pytest.raises(ExpressionError, match="expected"):
         evaluate_xacro(text, XacroNames())
+
+
+LIMITS = """\
+# what an arm may do
+joint_limits:
+  pan: {min: !degrees -180.0, max: !degrees 90, speed: 2.5}
+  lift: {min: !radians -1.5, max: 1.5e0, kind: 'revolute', has_brake: true}
+names: [pan, lift]
+origin: {x: 0.1, rpy: "0 0 1.5"}
+"""
+
+
+def table(folder, *parts, text=LIMITS):
+    (folder / "config").mkdir(exist_ok=True)
+    (folder / "config" / "limits.yaml").write_text(text, encoding="utf-8")
+    return read(folder, *parts)
+
+
+def test_tables_of_yaml_files_are_read_and_passed_to_macros(tmp_path):
+    tree = table(
+        tmp_path,
+        '<xacro:macro name="arm" params="file limits">',
+        '<xacro:property name="all" value="${load_yaml(file)}"/>',
+        '<xacro:property name="pan" value="${limits[\'pan\']}"/>',
+        '<link name="a"/><link name="b"/><link name="c"/>',
+        '<joint name="${all[\'names\'][0]}" type="${limits.lift.kind}"><parent link="a"/><child link="b"/>',
+        "<origin xyz=\"${all['origin']['x'] * 2} 0 0\" rpy=\"${all.origin.rpy}\"/>",
+        '<limit lower="${pan[\'min\']}" upper="${pan.max}"/></joint>',
+        '<joint name="${all.names[-1]}" type="revolute"><parent link="b"/><child link="c"/>',
+        "<limit lower=\"${limits['lift']['min']}\" upper=\"${limits['lift']['max']}\"/></joint></xacro:macro>",
+        "<xacro:property name=\"found\" value=\"${xacro.load_yaml('config/limits.yaml')['joint_limits']}\"/>",
+        '<xacro:arm file="config/limits.yaml" limits="${found}"/>',
+    )
+    assert [joint.name for joint in tree.joints] == ["pan", "lift"]
+    np.testing.assert_allclose(tree.limits, [[-math.pi, math.pi / 2], [-1.5, 1.5]], atol=1e-15)
+    np.testing.assert_allclose(tree.graph.joints[0].before[:3, 3], [0.2, 0, 0])
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("t['a']['b']", 1.5),
+        ("t.a.b + t['l'][1]", 21.5),
+        ("'a' in t", True),
+        ("t['z'] if 'z' in t else 7", 7),
+        ("'z' in 'abc'", False),
+        ("'z' in t and t['z'] > 1", False),
+        ("20 in t['l']", True),
+        ("len(t['l'])", 3),
+        ("len(t['z']) if False else 2", 2),
+        ("-t['z'] * 2 if False else 3", 3),
+        ("[1, 2, 'x'][2]", "x"),
+        ("len([])", 0),
+        ("'abc'[1]", "b"),
+        ("'1 2 3'.split(' ')[2]", "3"),
+        ("s.lower()", "left_arm"),
+        ("s.find('Arm') > 0", True),
+        ("s.startswith('Left')", True),
+        ("dict(a=1, b='c')['b']", "c"),
+        ("dict() if False else 1", 1),
+        ("t['word']", "on"),
+        ("t['nothing']", ""),
+        ("t[5]", "five"),
+    ],
+)
+def test_parts_of_tables_lists_and_strings(text, value):
+    known = xacro_table("a: {b: 1.5}\nl: [10, 20, 30]\nword: on\nnothing: ~\n5: five\n", "t.yaml")
+    names = XacroNames(tuple, {"t": known, "s": "Left_Arm"}.get)
+    found = evaluate_xacro(text, names)
+    assert found == value
+    assert type(found) is type(value)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("t['z']", "no part 'z' of a table"),
+        ("t['z']['y'] + 1", "no part 'z'"),
+        ("not t['z']", "no part 'z'"),
+        ("t['z'] or 1", "no part 'z'"),
+        ("1 if t['z'] else 2", "no part 'z'"),
+        ("len(t['z'])", "no part 'z'"),
+        ("t['bb']", "did you mean"),
+        ("t['l'][3]", "expected 0 to 2"),
+        ("t['l']['a']", "by no number"),
+        ("t['l'][True]", "by no number"),
+        ("t[t]", "table or a list in a text"),
+        ("t + 1", "table or a list"),
+        ("-t", "table or a list"),
+        ("t < t", "expected two of a kind"),
+        ("2 in 3", "'in'"),
+        ("1.5.a", "expected numbers"),
+        ("(1)['a']", "part taken"),
+        ("t['a'", "no ']'"),
+        ("t.get('a')", "nothing of a xacro file is run"),
+        ("t.__class__", "no part '__class__'"),
+        ("''.join(t)", "method of strings"),
+        ("'a'.split('')", "other arguments"),
+        ("'a'.lower(1)", "other arguments"),
+        ("str(t)", "has a value"),
+        ("float(t)", "has a value"),
+        ("max(t['l'])", "has a value"),
+        ("load_yaml('x.yaml')", "no file, expected none"),
+        ("load_yaml(1)", "the name of one YAML file"),
+        ("dict(a)", "name=value"),
+        ("dict(a=1", "no ')'"),
+        ("t['twice']", "twice in t.yaml, line"),
+    ],
+)
+def test_parts_that_there_are_not_are_told(text, words):
+    known = xacro_table("a: {b: 1.5, b1: 2}\nbbb: 1\nl: [10, 20, 30]\ntwice: 1\ntwice: 2\n", "t.yaml")
+    with pytest.raises(ExpressionError) as caught:
+        evaluate_xacro(text, XacroNames(tuple, {"t": known}.get))
+    assert words in caught.value.message
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("config/gone.yaml", LIMITS, "no file 'config/gone.yaml'"),
+        ("r.urdf.xacro", LIMITS, "ends in .yaml, .yml"),
+        ("../outside.yaml", LIMITS, "outside the file's own folder"),
+        ("/etc/passwd", LIMITS, "outside the file's own folder"),
+        ("config/limits.yaml", "a: [1", "limits.yaml:"),
+        ("config/limits.yaml", "a: !!python/object/apply:os.system ['true']", "tag"),
+        ("config/limits.yaml", "a: !degrees 90/2", "tag"),
+        ("config/limits.yaml", "a: *z", "alias"),
+        ("config/limits.yaml", "[" * 100 + "]" * 100, "nesting"),
+    ],
+)
+def test_files_of_tables_that_are_no_tables_are_refused_where_they_are_asked_for(tmp_path, name, text, words):
+    (tmp_path / "in").mkdir()
+    (tmp_path / "outside.yaml").write_text("a: 1\n")
+    with pytest.raises(InputError) as caught:
+        table(tmp_path / "in", f"<link name=\"${{xacro.load_yaml('{name}')['a']}}\"/>", text=text)
+    assert words in str(caught.value)
+    assert caught.value.line == 2
+
+
+def test_a_table_of_a_billion_words_is_refused(tmp_path):
+    lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x, x]"]
+    lines += [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]" for i in range(1, 9)]
+    with pytest.raises(InputError, match="more than 100000 values"):
+        table(tmp_path, "<link name=\"${load_yaml('config/limits.yaml')['a']}\"/>", text="\n".join(lines))
+
+
+def test_a_table_file_of_comments_is_an_empty_table_and_a_large_one_is_refused(tmp_path):
+    part = "<link name=\"${len(load_yaml('config/limits.yaml'))}\"/>"
+    joint = '<link name="b"/><joint name="j" type="fixed"><parent link="0"/><child link="b"/></joint>'
+    assert table(tmp_path, part, joint, text="# nothing\n---\n# more\n").graph.links == ("0", "b")
+    with pytest.raises(InputError, match="1 MiB"):
+        table(tmp_path, part, joint, text="# " + "x" * (1 << 20))
+
+
+def test_eval_knows_arguments_by_their_names(tmp_path):
+    parts = '<xacro:arg name="kind" default="hand"/><xacro:arg name="n" default="3"/>'
+    chosen = '<xacro:if value="$(eval kind == \'hand\' and n > 2)"><link name="hand"/></xacro:if>'
+    joint = '<joint name="j" type="fixed"><parent link="{}"/><child link="tip"/></joint><link name="tip"/>'
+    assert read(tmp_path, parts, chosen, joint.format("hand")).graph.links == ("hand", "tip")
+    other = chosen.replace("if", "unless").replace('"hand"', '"arm"')
+    tree = read(tmp_path, parts, chosen, other, joint.format("arm"), arguments={"kind": "none"})
+    assert tree.graph.links == ("arm", "tip")
+    assert "unknown name 'kin'" in str(refusal(tmp_path, parts, '<link name="$(eval kin)"/>'))
