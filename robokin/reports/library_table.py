@@ -19,7 +19,8 @@ def library_table(records: list[dict[str, Any]]) -> bytes:
         dof = "–" if record["dof"] is None else str(record["dof"])
         drawn.add_row(record["id"], record["name"], record["joints"], dof)
     kinds = [record["kind"] for record in records]
-    sums = [counted(kinds.count("robot"), "robot"), counted(kinds.count("mechanism"), "mechanism")]
+    robots = kinds.count("robot") + kinds.count("tree")  # a hand is a robot with several tips
+    sums = [counted(robots, "robot"), counted(kinds.count("mechanism"), "mechanism")]
     if "wheeled" in kinds:
         sums.append(counted(kinds.count("wheeled"), "wheeled base"))
     return render(drawn, "\n" + ", ".join(sums))

@@ -51,7 +51,9 @@ def test_every_name_is_in_the_table_on_a_line_of_its_own(call):
     names = library_names()
     assert set(names) <= {line.split()[0] for line in lines if line[:1].strip()}
     kinds = [record["kind"] for record in call("list", "--json").json]
-    robots, mechanisms, bases = (kinds.count(kind) for kind in ("robot", "mechanism", "wheeled"))
+    robots, mechanisms, bases = (
+        sum(kinds.count(kind) for kind in group) for group in (("robot", "tree"), ("mechanism",), ("wheeled",))
+    )
     assert lines[-1] == f"{robots} robots, {mechanisms} mechanisms, {bases} wheeled bases"
 
 
