@@ -36,13 +36,16 @@ from robokin.inverse.target_block import OUTSIDE
 from robokin.inverse.verify import within_limits, wrapped
 from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.facts import fact
-from robokin.model import CoupledRobot
+from robokin.model import CoupledRobot, Robot
 from robokin.model.robot import tolerated, within
 
 TURN = 2.0 * math.pi
 
 MOST = 10_000
 """Configurations of the drives that are looked at for one of the joints: limits that allow more are refused."""
+
+LISTED = 4
+"""How many times as many postures of arms with joints to spare are taken, of which some are outside the limits."""
 
 STARTS = 64
 """Descents for each target of an arm with followers; distinct ends of them are listed."""
@@ -76,7 +79,10 @@ def solve_coupled(
     if turns:
         check_turns(robot, limits)
     if robot.drive.invertible:
-        free = solve(robot.free_motion, T)
+        # Of infinitely many postures some are listed: what the limits leave each joint draws them where they count.
+        spare = limits and analysis_of(robot.free_motion, task).redundancy > 0
+        arm = robot.bounded_motion if spare else robot.free_motion
+        free = solve(arm, T, spare, LISTED * most if spare and most else None)
         wish = _Wish(robot, task, limits, near, turns, most, seed)
         results = [_of_motion(wish, T[i], free[i]) for i in range(len(T))]
         return _batch(wish, T, results, free.method)
@@ -111,7 +117,7 @@ def _of_motion(wish: _Wish, T: Array, motion: Result) -> Result:
     rows: list[tuple[Array, Solution]] = []
     pieces, endless = [], False
     for solution in motion.solutions:
-        q, more = _configurations(robot, drive.variables_for(solution.q), wish.limits, wish.turns)
+        q, more = _configurations(robot, drive.variables_for(solution.q), wish.limits, wish.turns, wish.near)
         endless |= more
         rows += [(u, solution) for u in q]
     for family in motion.families:
@@ -202,20 +208,24 @@ def _one_for_each(robot: CoupledRobot) -> bool:
     return bool(np.all(turned[robot.revolute] % 1.0 == 0.0) and not turned[~robot.revolute].any())
 
 
-def _configurations(robot: CoupledRobot, u: Array, limits: bool, turns: bool) -> tuple[list[Array], bool]:
+def _configurations(
+    robot: CoupledRobot, u: Array, limits: bool, turns: bool, near: Array | None = None
+) -> tuple[list[Array], bool]:
     """The variables (n,) [rad | m] that stand for the same posture as u (n,), one of those that are full turns apart.
 
-    With `limits` those within these; with `turns` all of them. Also whether there are more of them without end.
+    With `limits` those within these; with `turns` all of them, else of full turns of the variables the one nearest to
+    `near` (n,), or to zero. Also whether there are more of them without end.
     """
     if not turns and _one_for_each(robot):
-        q, inside = within_limits(wrapped(u[None], robot.revolute), robot.revolute, robot.limits, None)
+        q, inside = within_limits(wrapped(u[None], robot.revolute), robot.revolute, robot.limits, near)
         if not inside[0]:  # no turn of a variable is within its limits
             return ([] if limits else [q[0]]), False
         if robot.within_limits(q[0]):
             return [q[0]], False
     choices, endless = [], False
     for rows, variables in _groups(robot):
-        found, more = _of_group(robot, rows, variables, u, limits, turns)
+        wish = np.zeros(len(variables)) if near is None else near[variables]
+        found, more = _of_group(robot, rows, variables, u, limits, turns, wish)
         endless |= more
         choices.append((variables, found))
     if math.prod(len(found) for _, found in choices) > MOST:
@@ -232,9 +242,9 @@ def _configurations(robot: CoupledRobot, u: Array, limits: bool, turns: bool) ->
 
 
 def _of_group(
-    robot: CoupledRobot, rows: Index, variables: Index, u: Array, limits: bool, turns: bool
+    robot: CoupledRobot, rows: Index, variables: Index, u: Array, limits: bool, turns: bool, near: Array
 ) -> tuple[list[Array], bool]:
-    """The same for the variables of one group: their values (k,)."""
+    """The same for the variables of one group: their values (k,), of equal ones that next to `near` (k,)."""
     drive = robot.drive
     step = TURN * drive.inverse[np.ix_(variables, rows)] * robot.free_motion.revolute[rows]
     turning = robot.revolute[variables]
@@ -244,25 +254,19 @@ def _of_group(
     whole = drive.inverse[np.ix_(variables, rows)]
     whole = whole[:, robot.free_motion.revolute[rows]]
     ratios = bool(np.any(np.abs(whole - np.round(whole)) > 1e-12))
-    least, most = _ranges(drive.S[np.ix_(rows, variables)], step, start, _searched_box(box, turning, limits))
-    counts = most - least + 1
-    if float(np.prod(counts.astype(np.float64))) > MOST:
-        raise InputError(
-            f"the limits of {robot.name} allow more than {MOST} turns of its drives, expected narrower ones"
-        )
-    grid = np.array(
-        list(itertools.product(*(range(a, b + 1) for a, b in zip(least.tolist(), most.tolist(), strict=True))))
-    )
-    q = start + grid.reshape(-1, len(rows)) @ step.T
-    S, o, own = drive.S[np.ix_(rows, variables)], drive.offsets[rows], drive.limits[rows]
+    slides = ~robot.free_motion.revolute[rows]
+    S = drive.S[np.ix_(rows, variables)]
+    searched = _searched_box(box, turning, limits, near)
+    least, most = _ranges(S, step, start, _bounded(S, slides, turning, start[None], searched))
+    q = start + _whole_numbers(robot, least, most) @ step.T
+    o, own = drive.offsets[rows], drive.limits[rows]
+    low, high = tolerated(searched)
+    q = q[np.all((q >= low) & (q <= high), axis=1)]
     if limits:
-        q = q[_inside(box, own, q, q @ S.T + o)]
-    else:
-        low, high = tolerated(_searched_box(box, turning, False))
-        q = q[np.all((q >= low) & (q <= high), axis=1)]
+        q = q[within(own, q @ S.T + o)]
     if not len(q):
         return [], False
-    rest = np.max(np.abs(np.where(np.isfinite(q), q, 0.0)), axis=1)
+    rest = np.max(np.abs(q - near), axis=1)
     outside = ~_inside(box, own, q, q @ S.T + o)
     keep = np.lexsort((rest, outside))
     chosen: list[Array] = []
@@ -285,28 +289,45 @@ def _equal(a: Array, b: Array, turning: Flags) -> bool:
     return bool(np.max(np.abs(gap), initial=0.0) < SAME)
 
 
-def _searched_box(box: Array, turning: Flags, limits: bool) -> Array:
+def _searched_box(box: Array, turning: Flags, limits: bool, near: Array) -> Array:
     """Between which values (k, 2) the variables are looked for: their limits, of angles without any half a turn.
 
-    Where limits do not count, an angle is anywhere within half a turn or its limits.
+    Where limits do not count, an angle is anywhere within half a turn of `near` (k,) or its limits.
     """
-    half = np.tile([-np.pi, np.pi], (len(box), 1))
+    half = near[:, None] + [-np.pi, np.pi]
     free = np.tile([-np.inf, np.inf], (len(box), 1))
     if limits:
         bounded = np.any(np.isfinite(box), axis=1, keepdims=True)
-        around = np.where(bounded, _one_turn(box), half)
+        around = np.where(bounded, _one_turn(box, near), half)
         return np.where(turning[:, None], around, box)
     wide = np.stack(
-        [np.where(np.isfinite(box[:, 0]), np.minimum(box[:, 0], -np.pi), -np.pi),
-         np.where(np.isfinite(box[:, 1]), np.maximum(box[:, 1], np.pi), np.pi)], axis=1
+        [np.where(np.isfinite(box[:, 0]), np.minimum(box[:, 0], half[:, 0]), half[:, 0]),
+         np.where(np.isfinite(box[:, 1]), np.maximum(box[:, 1], half[:, 1]), half[:, 1])], axis=1
     )  # fmt: skip
     return np.where(turning[:, None], wide, free)
 
 
-def _one_turn(box: Array) -> Array:
-    """Limits (k, 2) of which a missing one is a turn from the other."""
-    low = np.where(np.isfinite(box[:, 0]), box[:, 0], box[:, 1] - TURN)
-    high = np.where(np.isfinite(box[:, 1]), box[:, 1], box[:, 0] + TURN)
+def _bounded(S: Array, slides: Flags, turning: Flags, points: Array, box: Array) -> Array:
+    """The box (k, 2) with an end for what slides without limits: where full turns from points (s, k) may bring it.
+
+    slides: (r,) rows of S that do not turn. They stay where they are, and so the variables that slide follow those that
+    turn, which are bounded.
+    """
+    if np.all(np.isfinite(box)):
+        return box
+    rate = -np.linalg.solve(S[np.ix_(slides, ~turning)], S[np.ix_(slides, turning)])
+    least, most = points.min(axis=0), points.max(axis=0)
+    ends = np.stack([rate * (box[turning, 0] - most[turning]), rate * (box[turning, 1] - least[turning])])
+    low, high = least[~turning] + ends.min(axis=0).sum(axis=1), most[~turning] + ends.max(axis=0).sum(axis=1)
+    out = box.copy()
+    out[~turning, 0], out[~turning, 1] = np.maximum(box[~turning, 0], low), np.minimum(box[~turning, 1], high)
+    return out
+
+
+def _one_turn(box: Array, near: Array) -> Array:
+    """Limits (k, 2) of which a missing one is half a turn beyond `near` (k,), and a turn or more from the other."""
+    low = np.where(np.isfinite(box[:, 0]), box[:, 0], np.minimum(near - np.pi, box[:, 1] - TURN))
+    high = np.where(np.isfinite(box[:, 1]), box[:, 1], np.maximum(near + np.pi, box[:, 0] + TURN))
     return np.stack([low, high], axis=1)
 
 
@@ -333,15 +354,50 @@ def _pieces(wish: _Wish, family: Family) -> tuple[Arc, ...]:
             middle = 0.5 * (np.min(u, axis=0) + np.max(u, axis=0))
             out.append(Arc(u - np.where(robot.revolute, TURN * np.round(middle / TURN), 0.0), arc.whole))
             continue
-        # Every full turn by which a point of it comes within the limits is tried.
-        shifts: list[Array] = []
-        for point in u:
-            for other in _configurations(robot, point, True, True)[0]:
-                if not any(np.max(np.abs(other - point - shift)) < SAME for shift in shifts):
-                    shifts.append(other - point)
-        for shift in shifts:
-            out += _runs(u + shift, np.asarray(robot.within_limits(u + shift)), arc.whole)
+        for shift in _shifts(robot, u):
+            inside = np.asarray(robot.within_limits(u + shift))
+            if inside.any():
+                out += _runs(u + shift, inside, arc.whole)
     return tuple(out)
+
+
+def _shifts(robot: CoupledRobot, u: Array) -> list[Array]:
+    """The full turns (n,), in the variables, by which points of a curve (k, n) may come within the limits."""
+    drive, near = robot.drive, np.zeros(robot.n)
+    shifts = [near]
+    for rows, variables in _groups(robot):
+        S = drive.S[np.ix_(rows, variables)]
+        step = TURN * drive.inverse[np.ix_(variables, rows)] * robot.free_motion.revolute[rows]
+        box = _searched_box(robot.limits[variables], robot.revolute[variables], True, near[variables])
+        points = u[:, variables]
+        box = _bounded(S, ~robot.free_motion.revolute[rows], robot.revolute[variables], points, box)
+        # Between which turns those of all points are: the ends of what S makes of the curve.
+        turned = points @ S.T
+        ends = [
+            _ranges(S, step, end @ drive.inverse[np.ix_(variables, rows)].T, box)
+            for end in (turned.max(axis=0), turned.min(axis=0))
+        ]
+        grid = _whole_numbers(robot, ends[0][0], ends[1][1]) @ step.T
+        own = drive.limits[rows]
+        moved = []
+        for turn in grid:
+            q = points + turn
+            if _inside(robot.limits[variables], own, q, q @ S.T + drive.offsets[rows]).any():
+                whole = np.zeros(robot.n)
+                whole[variables] = turn
+                moved.append(whole)
+        shifts = [one + other for one in shifts for other in moved]
+    return shifts
+
+
+def _whole_numbers(robot: Robot, least: Index, most: Index) -> Array:
+    """All rows of whole numbers (r,) between two. Raises InputError where they are too many."""
+    if float(np.prod((most - least + 1).astype(np.float64))) > MOST:
+        raise InputError(
+            f"the limits of {robot.name} allow more than {MOST} turns of its drives, expected narrower ones"
+        )
+    ranges = (range(a, b + 1) for a, b in zip(least.tolist(), most.tolist(), strict=True))
+    return np.array(list(itertools.product(*ranges))).reshape(-1, len(least))
 
 
 def _runs(u: Array, inside: Flags, whole: bool) -> list[Arc]:

@@ -102,8 +102,9 @@ def solve_many(
         if hold:
             raise InputError(f"hold: {robot.coupled}, expected a robot whose joints move one by one")
 
-        def free(arm: Robot, T: Array) -> BatchResult:
-            return solve_many(arm, T, False, None, method, task, None, seed, False, None, motions, cores)
+        def free(arm: Robot, T: Array, bounded: bool, listed: int | None) -> BatchResult:
+            wish = None if near is None else robot.drive.motions(near)
+            return solve_many(arm, T, bounded, wish, method, task, listed, seed, False, None, motions, cores)
 
         poses = target_poses(T).reshape(-1, 4, 4)
         return solve_coupled(robot, poses, free, task, most, seed, limits, near, turns)

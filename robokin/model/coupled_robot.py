@@ -100,6 +100,21 @@ class CoupledRobot(Robot):
             self.parameters, self.base, self.tool,
         )  # fmt: skip
 
+    @cached_property
+    def bounded_motion(self) -> Robot:
+        """The same within what the limits of the variables and of the joints leave each joint by itself."""
+        S, (low, high) = self.drive.S, self.limits.T
+        with np.errstate(invalid="ignore"):
+            ends = np.where(S == 0.0, 0.0, [S * low, S * high])
+        hull = np.stack([ends.min(axis=0).sum(axis=1), ends.max(axis=0).sum(axis=1)], axis=1)
+        hull += self.drive.offsets[:, None]
+        box = np.stack(
+            [np.maximum(hull[:, 0], self.drive.limits[:, 0]), np.minimum(hull[:, 1], self.drive.limits[:, 1])]
+        )
+        if np.any(box[0] > box[1]):
+            return self.free_motion  # no value is within: what is found elsewhere is told as outside
+        return replace(self.free_motion, rows=self._rows(box.T))
+
     def _rows(self, limits: Array) -> tuple[Joint, ...]:
         own = iter(limits.tolist())
         parts = (part for row in self.rows for part in parts_of(row, self.convention))

@@ -219,3 +219,57 @@ def test_what_has_no_answer_yet_is_refused():
         robokin.solve_ik(arm, T, hold={0: 0.0})
     with pytest.raises(robokin.InputError, match="joint dip hangs on pip"):
         robokin.analyse_workspace(arm)
+
+
+def test_near_is_at_the_head_and_each_angle_is_turned_next_to_it():
+    limits = np.tile([-2.5 * np.pi, 2.5 * np.pi], (6, 1))
+    limits[3] = -np.inf, np.inf
+    arm = coupled(robokin.load("puma560"), [(3, 2, -1.0, True), (6, 5, 0.5, True)], limits)
+    for near in np.random.default_rng(36).uniform(-7.0, 7.0, (6, 6)):
+        T = robokin.forward_kinematics(arm, near)
+        for counting in (True, False):
+            result = robokin.solve_ik(arm, T, counting, near=near)
+            np.testing.assert_allclose(result[0].q, near, atol=1e-7)
+            moves = [np.max(np.abs(solution.q - near)) for solution in result]
+            assert moves == sorted(moves)
+
+
+def test_joints_to_spare_are_listed_within_the_limits_and_near_is_one_of_them():
+    limits = np.radians([[-170, 170], [-120, 120]] * 3 + [[-175, 175]])
+    motion = np.tile(FREE, (7, 1))
+    motion[3] = np.radians([-70, -55])
+    arm = coupled(robokin.load("iiwa14"), [(4, 2, -1.0, True)], limits, motion)
+    q = random_values(arm, np.random.default_rng(37), 200)
+    q = q[arm.within_limits(q)][:2]
+    for i, T in enumerate(robokin.forward_kinematics(arm, q)):
+        near = robokin.solve_ik(arm, T, near=q[i])
+        np.testing.assert_allclose(near[0].q, q[i], atol=1e-7)
+        many = robokin.solve_ik(arm, T, most=24)
+        assert len(many) > 16
+        found = np.array([solution.q for solution in many])
+        assert np.all(arm.within_limits(found))
+        assert np.max(np.abs(robokin.forward_kinematics(arm, found) - T)) < 1e-8
+
+
+@pytest.mark.parametrize("couplings", [[(2, 1, 0.05, True)], [(3, 2, 18.0, True)],
+                                       [(2, 1, 0.05, True), (3, 2, 18.0, True)]])  # fmt: skip
+@pytest.mark.parametrize("bounded", [False, True])
+def test_slides_without_limits_that_turn_with_joints(couplings, bounded):
+    rows = (
+        Joint("j1", JointType.REVOLUTE, a=0.3),
+        Joint("j2", JointType.PRISMATIC),
+        Joint("j3", JointType.REVOLUTE, a=0.2),
+    )
+    limits = [FREE, (-1.0, 1.0) if bounded else FREE, FREE]
+    arm = coupled(Robot("three", rows), couplings, limits)
+    for q in np.random.default_rng(38).uniform(-0.9, 0.9, (4, 3)):
+        T = robokin.forward_kinematics(arm, q)
+        for counting in (True, False):
+            for turns in (True, False) if counting else (False,):
+                result = robokin.solve_ik(arm, T, counting, task="position", turns=turns)
+                found = np.array([solution.q for solution in result])
+                assert len(found) == 2
+                assert np.max(np.abs(robokin.forward_kinematics(arm, found)[:, :3, 3] - T[:3, 3])) < 1e-9
+                assert np.all(np.abs(found[:, [0, 2]]) <= np.pi)
+                # A turn of the first joint brings another slide: of these there is no end.
+                assert result.complete == (couplings[0][0] != 2)
