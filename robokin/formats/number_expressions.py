@@ -326,7 +326,9 @@ def last_place(text: str) -> float:
     digits = (whole + fraction).lstrip("0")
     # The zeros that end a whole number say nothing, those of 0.000 that it was rounded.
     digits = digits if digits and point else digits.rstrip("0") or fraction
-    return float(10.0 ** (int(exponent or "0") - len(fraction))) if len(digits) >= ROUNDED else 0.0
+    # Beyond a thousand a power is 0 or infinite all the same, and Python makes no whole number of thousands of digits.
+    power = int(max(-1000.0, min(float(exponent or "0"), 1000.0))) - len(fraction)
+    return float(f"1e{power}") if len(digits) >= ROUNDED else 0.0
 
 
 def _spread(function: Function, number: float, arguments: list[Value]) -> float:

@@ -18,7 +18,7 @@ from robokin.formats.library import library_files
 from robokin.formats.number_expressions import Scope, evaluate
 from robokin.formats.parameters import Parameters
 from robokin.formats.transform_expressions import evaluate_transform
-from robokin.model import Mechanism, Robot, WheeledBase
+from robokin.model import Mechanism, Robot, Tree, WheeledBase
 from robokin.units import Units
 
 
@@ -49,7 +49,7 @@ def read_or_say(text):
             assert "expected" in one.message or "did you mean" in one.message, one.message
             assert not one.excerpt or len(one.excerpt.split("\n")) == 2
         return
-    assert isinstance(value, Robot | Mechanism | WheeledBase)
+    assert isinstance(value, Robot | Mechanism | WheeledBase | Tree)
     repr(value)
     if isinstance(value, Robot):
         for row in value.rows:
@@ -62,6 +62,9 @@ def read_or_say(text):
     elif isinstance(value, WheeledBase):
         for wheel in value.wheels:
             assert all(map(math.isfinite, (wheel.x, wheel.y, wheel.angle, wheel.radius, wheel.offset, wheel.roller)))
+    elif isinstance(value, Tree):
+        assert all(np.all(np.isfinite(pose)) for pose in value.poses.values())
+        assert all(np.all(np.isfinite(part)) for joint in value.graph.joints for part in (joint.before, joint.after))
     else:
         for joint in value.joints:
             assert joint.axes is None or np.allclose(np.linalg.norm(joint.axes, axis=1), 1.0)

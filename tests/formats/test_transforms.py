@@ -272,6 +272,8 @@ def test_a_pose_is_finite(value):
         ("Trans(1, 2, 3) * * Rot(x, 1)", 17, "expected a step"), ("Trans(1, 2, 3) + Rot(x, 1)", 15, "found '+'"),
         ("1", 0, "found '1'"),
         ("[[1, 0], [0, 1]]", 0, "expected a step"), ("Trans(1e999, 0, 0)", 6, "too large"),
+        ("Trans(12345e990, 0, 0)", 6, "too large"), ("Rot(z, -9.51e990)", 8, "too large"),
+        (f"Rot(z, 951e{'9' * 5000})", 7, "too large"),
         ("Trans(1/0, 0, 0)", 7, "zero"),
         ("Trans(a, 0, 0)", 6, "unknown name 'a'"), ("Trans[1, 2, 3]", 5, "found '['"), ("°", 0, "found '°'"),
         ("x", 0, "expected one of"),
