@@ -55,7 +55,7 @@ def silent() -> Iterator[None]:
     sys.stdout.flush()
     sys.stderr.flush()
     kept = [os.dup(number) for number in (1, 2)]
-    with open(os.devnull, "w") as nothing:  # noqa: PTH123
+    with Path(os.devnull).open("w", encoding="utf-8") as nothing:
         for number in (1, 2):
             os.dup2(nothing.fileno(), number)
         try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, is_dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -42,6 +43,15 @@ class Answer(Brief):
         import robokin
 
         return robokin.notebook.html_of(self)
+
+
+class Described(Answer):
+    """What a description describes: copied and pickled by its fields, of which some are read-only views of mappings."""
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        """The class and its fields, mappings as plain ones: a read-only view cannot be pickled."""
+        values = (getattr(self, part.name) for part in fields(self))  # type: ignore[arg-type]
+        return type(self), tuple(dict(value) if isinstance(value, MappingProxyType) else value for value in values)
 
 
 def _shown(value: Any) -> str:

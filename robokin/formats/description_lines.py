@@ -12,8 +12,7 @@ from robokin.arrays import Array, Flags
 from robokin.formats.exact_numbers import angle_text, length_text, number_text, transform_text
 from robokin.formats.node_values import LONGEST, NO_WORD
 from robokin.model import Joint, JointType
-from robokin.model.graph import Coupling
-from robokin.model.robot import NO_LIMITS
+from robokin.model.graph import NO_LIMITS, Coupling
 from robokin.units import Units
 
 PLAIN = re.compile(r"[A-Za-z_](?:[\w ./()²³-]*[\w.)])?")

@@ -19,8 +19,8 @@ from robokin.formats.description_lines import different_names, one_line, plain_n
 from robokin.formats.tree_bodies import ROOT, Bodies, bodies_of, placed_row
 from robokin.kinematics.dh_table import to_convention
 from robokin.model import Joint, JointType, Robot, Tree
-from robokin.model.graph import Coupling
-from robokin.model.robot import NO_LIMITS, Convention, row_constants
+from robokin.model.graph import NO_LIMITS, Coupling
+from robokin.model.robot import Convention, row_constants
 from robokin.spatial import exact, invert, rotation_transform, translation_transform
 
 WORLD = "base"

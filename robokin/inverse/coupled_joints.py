@@ -2,10 +2,7 @@
 
 Statement. Given a pose, find the variables u that bring the tool there.
 Derivation. Where S is square and regular the joints' values v are found by the arm whose joints move one by one, with
-everything that is known of it, and u = S⁻¹ (v - o). A full turn of a joint that turns leaves the pose, but not always
-the variables: v + 2π k, k whole, has u + 2π S⁻¹ k. Where S⁻¹ is whole these are the full turns of the variables; where
-it is not (a ratio of 13 to 72) they are other configurations of the drives, and all of those within the limits are
-listed. Joints that are not connected by S do not know of each other: their choices are combined.
+everything that is known of it, and u = S⁻¹ (v - o), as many as full turns of the joints make (`coupled_turns`).
 Where S is tall (a joint follows another) the arm has fewer freedoms than joints, and no closed form of it holds: what
 is found by descents in u is listed, and that these are all is not said.
 Degenerate case. Of self-motions the pieces within limits of variables end at the last point within, where those of an
@@ -14,35 +11,26 @@ arm without couplings end on the limit; `complete` is then not said. Without lim
 
 from __future__ import annotations
 
-import itertools
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robokin.arrays import Array, Flags, Index
-from robokin.errors import InputError
+from robokin.arrays import Array
 from robokin.inverse.analysis import Task, analysis_of
 from robokin.inverse.claims import SEARCHED
+from robokin.inverse.coupled_turns import SAME, configurations, pieces
 from robokin.inverse.full_turns import check_turns, task_errors
 from robokin.inverse.numeric.closest import beyond_reach
 from robokin.inverse.numeric.driven_descent import chosen_starts, driven_ends, driven_search
 from robokin.inverse.numeric.driven_tips import DrivenTips
 from robokin.inverse.self_motion.redundant import NOT_FOUND, UNPROVEN
 from robokin.inverse.single_answer import FAR
-from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution
+from robokin.inverse.solutions import BatchResult, Result, Solution
 from robokin.inverse.target_block import OUTSIDE
-from robokin.inverse.verify import within_limits, wrapped
 from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.facts import fact
-from robokin.model import CoupledRobot, Robot
-from robokin.model.robot import tolerated, within
-
-TURN = 2.0 * math.pi
-
-MOST = 10_000
-"""Configurations of the drives that are looked at for one of the joints: limits that allow more are refused."""
+from robokin.model import CoupledRobot
 
 LISTED = 4
 """How many times as many postures of arms with joints to spare are taken, of which some are outside the limits."""
@@ -50,10 +38,7 @@ LISTED = 4
 STARTS = 64
 """Descents for each target of an arm with followers; distinct ends of them are listed."""
 
-SAME = 1e-6
-"""Variables that differ by less in everything [rad | size] are one configuration."""
-
-FOLLOWERS = "joints that follow others, found by search: there may be more"
+FOLLOWERS = "fewer freedoms than joints that move: found by search, which proves nothing"
 ENDLESS = "a variable without limits turns a joint through a ratio: there are more, full turns apart"
 CUT_MOTIONS = "the pieces of self-motions within the limits of coupled joints were found by points alone"
 NEARLY = 1e-7
@@ -115,16 +100,16 @@ def _of_motion(wish: _Wish, T: Array, motion: Result) -> Result:
     """The answer for one target from that of the arm whose joints move one by one, without limits."""
     robot, drive = wish.robot, wish.robot.drive
     rows: list[tuple[Array, Solution]] = []
-    pieces, endless = [], False
+    families, endless = [], False
     for solution in motion.solutions:
-        q, more = _configurations(robot, drive.variables_for(solution.q), wish.limits, wish.turns, wish.near)
+        q, more = configurations(robot, drive.variables_for(solution.q), wish.limits, wish.turns, wish.near)
         endless |= more
         rows += [(u, solution) for u in q]
     for family in motion.families:
-        arcs = _pieces(wish, family)
-        pieces.append(replace(family, joints=_moved(robot, family.joints), arcs=arcs, solution=-1))
+        arcs = tuple(piece for arc in family.arcs for piece in pieces(robot, arc, wish.limits))
+        families.append(replace(family, joints=_moved(robot, family.joints), arcs=arcs, solution=-1))
         if wish.limits and arcs and not rows:
-            like = next(s for s in motion.solutions)
+            like = motion.solutions[0] if motion.solutions else _no_name(arcs[0].q[0])
             rows += [(arc.q[len(arc.q) // 2], like) for arc in arcs]
     cut_motions = bool(motion.families) and wish.limits
     if not rows and (motion.families or not motion.complete):
@@ -141,7 +126,7 @@ def _of_motion(wish: _Wish, T: Array, motion: Result) -> Result:
     counts.pop("turns", None)
     told = replace(
         motion, solutions=tuple(listed), complete=complete, basis=motion.basis if complete else None,
-        certificate=words, counts=counts, families=tuple(pieces), postures=motion.postures and complete,
+        certificate=words, counts=counts, families=tuple(families), postures=motion.postures and complete,
         all_known=motion.all_known and not endless and not cut_motions, reason=None, nearest=None, question=None,
     )  # fmt: skip
     if listed:
@@ -177,239 +162,6 @@ def _moved(robot: CoupledRobot, joints: tuple[int, ...]) -> tuple[int, ...]:
         return ()
     moved = np.any(robot.drive.inverse[:, [joint - 1 for joint in joints]] != 0.0, axis=1)
     return tuple((np.flatnonzero(moved) + 1).tolist())
-
-
-@fact
-def _groups(robot: CoupledRobot) -> list[tuple[Index, Index]]:
-    """Rows and variables that S connects, with nothing between the groups."""
-    n = robot.n
-    linked = np.abs(robot.drive.S) > 0.0
-    linked = linked | (np.abs(robot.drive.inverse.T) > 0.0)
-    groups: list[tuple[Index, Index]] = []
-    open_ = set(range(n))
-    while open_:
-        variables = {min(open_)}
-        rows: set[int] = set()
-        while True:
-            more_rows = set(np.flatnonzero(linked[:, sorted(variables)].any(axis=1)).tolist())
-            more = set(np.flatnonzero(linked[sorted(more_rows)].any(axis=0)).tolist())
-            if more == variables and more_rows == rows:
-                break
-            variables, rows = more | variables, more_rows
-        open_ -= variables
-        groups.append((np.array(sorted(rows), dtype=np.intp), np.array(sorted(variables), dtype=np.intp)))
-    return groups
-
-
-@fact
-def _one_for_each(robot: CoupledRobot) -> bool:
-    """Whether full turns of the joints are full turns of the variables: a posture is one configuration of these."""
-    turned = robot.drive.inverse[:, robot.free_motion.revolute]
-    return bool(np.all(turned[robot.revolute] % 1.0 == 0.0) and not turned[~robot.revolute].any())
-
-
-def _configurations(
-    robot: CoupledRobot, u: Array, limits: bool, turns: bool, near: Array | None = None
-) -> tuple[list[Array], bool]:
-    """The variables (n,) [rad | m] that stand for the same posture as u (n,), one of those that are full turns apart.
-
-    With `limits` those within these; with `turns` all of them, else of full turns of the variables the one nearest to
-    `near` (n,), or to zero. Also whether there are more of them without end.
-    """
-    if not turns and _one_for_each(robot):
-        q, inside = within_limits(wrapped(u[None], robot.revolute), robot.revolute, robot.limits, near)
-        if not inside[0]:  # no turn of a variable is within its limits
-            return ([] if limits else [q[0]]), False
-        if robot.within_limits(q[0]):
-            return [q[0]], False
-    choices, endless = [], False
-    for rows, variables in _groups(robot):
-        wish = np.zeros(len(variables)) if near is None else near[variables]
-        found, more = _of_group(robot, rows, variables, u, limits, turns, wish)
-        endless |= more
-        choices.append((variables, found))
-    if math.prod(len(found) for _, found in choices) > MOST:
-        raise InputError(
-            f"the limits of {robot.name} allow more than {MOST} turns of its drives, expected narrower ones"
-        )
-    out = []
-    for combination in itertools.product(*(found for _, found in choices)):
-        q = np.empty(robot.n)
-        for (variables, _), part in zip(choices, combination, strict=True):
-            q[variables] = part
-        out.append(q)
-    return out, endless
-
-
-def _of_group(
-    robot: CoupledRobot, rows: Index, variables: Index, u: Array, limits: bool, turns: bool, near: Array
-) -> tuple[list[Array], bool]:
-    """The same for the variables of one group: their values (k,), of equal ones that next to `near` (k,)."""
-    drive = robot.drive
-    step = TURN * drive.inverse[np.ix_(variables, rows)] * robot.free_motion.revolute[rows]
-    turning = robot.revolute[variables]
-    box = robot.limits[variables]
-    finite: Flags = np.all(np.isfinite(box), axis=1)
-    start = u[variables]
-    whole = drive.inverse[np.ix_(variables, rows)]
-    whole = whole[:, robot.free_motion.revolute[rows]]
-    ratios = bool(np.any(np.abs(whole - np.round(whole)) > 1e-12))
-    slides = ~robot.free_motion.revolute[rows]
-    S = drive.S[np.ix_(rows, variables)]
-    searched = _searched_box(box, turning, limits, near)
-    least, most = _ranges(S, step, start, _bounded(S, slides, turning, start[None], searched))
-    q = start + _whole_numbers(robot, least, most) @ step.T
-    o, own = drive.offsets[rows], drive.limits[rows]
-    low, high = tolerated(searched)
-    q = q[np.all((q >= low) & (q <= high), axis=1)]
-    if limits:
-        q = q[within(own, q @ S.T + o)]
-    if not len(q):
-        return [], False
-    rest = np.max(np.abs(q - near), axis=1)
-    outside = ~_inside(box, own, q, q @ S.T + o)
-    keep = np.lexsort((rest, outside))
-    chosen: list[Array] = []
-    for i in keep.tolist():
-        same = turning if not turns else np.zeros(len(turning), dtype=bool)
-        if not any(_equal(q[i], other, same) for other in chosen):
-            chosen.append(q[i])
-    return chosen, ratios and not bool(np.all(finite | ~turning))
-
-
-def _inside(box: Array, own: Array, q: Array, v: Array) -> Flags:
-    """(s,) whether variables q (s, k) are within box (k, 2), and joints' values v (s, r) within own (r, 2)."""
-    return np.asarray(within(box, q)) & np.asarray(within(own, v))
-
-
-def _equal(a: Array, b: Array, turning: Flags) -> bool:
-    """Whether two values (k,) are the same, of angles but for full turns."""
-    gap = a - b
-    gap = np.where(turning, gap - TURN * np.round(gap / TURN), gap)
-    return bool(np.max(np.abs(gap), initial=0.0) < SAME)
-
-
-def _searched_box(box: Array, turning: Flags, limits: bool, near: Array) -> Array:
-    """Between which values (k, 2) the variables are looked for: their limits, of angles without any half a turn.
-
-    Where limits do not count, an angle is anywhere within half a turn of `near` (k,) or its limits.
-    """
-    half = near[:, None] + [-np.pi, np.pi]
-    free = np.tile([-np.inf, np.inf], (len(box), 1))
-    if limits:
-        bounded = np.any(np.isfinite(box), axis=1, keepdims=True)
-        around = np.where(bounded, _one_turn(box, near), half)
-        return np.where(turning[:, None], around, box)
-    wide = np.stack(
-        [np.where(np.isfinite(box[:, 0]), np.minimum(box[:, 0], half[:, 0]), half[:, 0]),
-         np.where(np.isfinite(box[:, 1]), np.maximum(box[:, 1], half[:, 1]), half[:, 1])], axis=1
-    )  # fmt: skip
-    return np.where(turning[:, None], wide, free)
-
-
-def _bounded(S: Array, slides: Flags, turning: Flags, points: Array, box: Array) -> Array:
-    """The box (k, 2) with an end for what slides without limits: where full turns from points (s, k) may bring it.
-
-    slides: (r,) rows of S that do not turn. They stay where they are, and so the variables that slide follow those that
-    turn, which are bounded.
-    """
-    if np.all(np.isfinite(box)):
-        return box
-    rate = -np.linalg.solve(S[np.ix_(slides, ~turning)], S[np.ix_(slides, turning)])
-    least, most = points.min(axis=0), points.max(axis=0)
-    ends = np.stack([rate * (box[turning, 0] - most[turning]), rate * (box[turning, 1] - least[turning])])
-    low, high = least[~turning] + ends.min(axis=0).sum(axis=1), most[~turning] + ends.max(axis=0).sum(axis=1)
-    out = box.copy()
-    out[~turning, 0], out[~turning, 1] = np.maximum(box[~turning, 0], low), np.minimum(box[~turning, 1], high)
-    return out
-
-
-def _one_turn(box: Array, near: Array) -> Array:
-    """Limits (k, 2) of which a missing one is half a turn beyond `near` (k,), and a turn or more from the other."""
-    low = np.where(np.isfinite(box[:, 0]), box[:, 0], np.minimum(near - np.pi, box[:, 1] - TURN))
-    high = np.where(np.isfinite(box[:, 1]), box[:, 1], np.maximum(near + np.pi, box[:, 0] + TURN))
-    return np.stack([low, high], axis=1)
-
-
-def _ranges(S: Array, step: Array, start: Array, box: Array) -> tuple[Index, Index]:
-    """The least and the greatest whole numbers of turns (r,) of each row that leave the variables in a box (k, 2)."""
-    # v - v0 = S (u - u0) = 2π k of the rows that turn: of u in a box each is in an interval.
-    with np.errstate(invalid="ignore"):
-        ends = np.stack([S * (box[:, 0] - start), S * (box[:, 1] - start)])
-    ends = np.where(S == 0.0, 0.0, ends)
-    low, high = ends.min(axis=0).sum(axis=1), ends.max(axis=0).sum(axis=1)
-    turns = np.any(step != 0.0, axis=0)
-    low, high = np.where(turns, low, 0.0) / TURN, np.where(turns, high, 0.0) / TURN
-    # Something to spare for rounding: what is outside is left out afterwards.
-    return np.ceil(low - 1e-6).astype(np.intp), np.floor(high + 1e-6).astype(np.intp)
-
-
-def _pieces(wish: _Wish, family: Family) -> tuple[Arc, ...]:
-    """The pieces of a self-motion in the variables, with `limits` within these."""
-    robot = wish.robot
-    out: list[Arc] = []
-    for arc in family.arcs:
-        u = robot.drive.variables_for(arc.q)
-        if not wish.limits:
-            middle = 0.5 * (np.min(u, axis=0) + np.max(u, axis=0))
-            out.append(Arc(u - np.where(robot.revolute, TURN * np.round(middle / TURN), 0.0), arc.whole))
-            continue
-        for shift in _shifts(robot, u):
-            inside = np.asarray(robot.within_limits(u + shift))
-            if inside.any():
-                out += _runs(u + shift, inside, arc.whole)
-    return tuple(out)
-
-
-def _shifts(robot: CoupledRobot, u: Array) -> list[Array]:
-    """The full turns (n,), in the variables, by which points of a curve (k, n) may come within the limits."""
-    drive, near = robot.drive, np.zeros(robot.n)
-    shifts = [near]
-    for rows, variables in _groups(robot):
-        S = drive.S[np.ix_(rows, variables)]
-        step = TURN * drive.inverse[np.ix_(variables, rows)] * robot.free_motion.revolute[rows]
-        box = _searched_box(robot.limits[variables], robot.revolute[variables], True, near[variables])
-        points = u[:, variables]
-        box = _bounded(S, ~robot.free_motion.revolute[rows], robot.revolute[variables], points, box)
-        # Between which turns those of all points are: the ends of what S makes of the curve.
-        turned = points @ S.T
-        ends = [
-            _ranges(S, step, end @ drive.inverse[np.ix_(variables, rows)].T, box)
-            for end in (turned.max(axis=0), turned.min(axis=0))
-        ]
-        grid = _whole_numbers(robot, ends[0][0], ends[1][1]) @ step.T
-        own = drive.limits[rows]
-        moved = []
-        for turn in grid:
-            q = points + turn
-            if _inside(robot.limits[variables], own, q, q @ S.T + drive.offsets[rows]).any():
-                whole = np.zeros(robot.n)
-                whole[variables] = turn
-                moved.append(whole)
-        shifts = [one + other for one in shifts for other in moved]
-    return shifts
-
-
-def _whole_numbers(robot: Robot, least: Index, most: Index) -> Array:
-    """All rows of whole numbers (r,) between two. Raises InputError where they are too many."""
-    if float(np.prod((most - least + 1).astype(np.float64))) > MOST:
-        raise InputError(
-            f"the limits of {robot.name} allow more than {MOST} turns of its drives, expected narrower ones"
-        )
-    ranges = (range(a, b + 1) for a, b in zip(least.tolist(), most.tolist(), strict=True))
-    return np.array(list(itertools.product(*ranges))).reshape(-1, len(least))
-
-
-def _runs(u: Array, inside: Flags, whole: bool) -> list[Arc]:
-    """The pieces of a curve (k, n) whose points are inside, each of them two or more points."""
-    if inside.all():
-        return [Arc(u, whole)]
-    if whole and inside[0]:  # the curve closes: a piece may run over where it begins
-        first = int(np.flatnonzero(~inside)[0])
-        ahead = u[1 : first + 1] + (u[-1] - u[0])
-        u, inside = np.concatenate([u[first:], ahead]), np.concatenate([inside[first:], inside[1 : first + 1]])
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(np.int8), [0]])))
-    return [Arc(u[a:b]) for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True) if b - a > 1]
 
 
 # Search ------------------------------------------------------------------------------------------------------------

@@ -54,7 +54,7 @@ class Chain(Brief):
 def chain_of(robot: Robot) -> Chain:
     """The chain of a robot, from its base to its tool.
 
-    Raises InputError for a robot whose joints do not move one by one: of its `motion` it is asked.
+    Raises InputError for a robot whose joints do not move one by one: of its `free_motion` it is asked.
     """
     part = expect_uncoupled(robot).graph.chain("base", "tool")
     start = (invert(part.constants[0]) @ part.base)[:3, 3]

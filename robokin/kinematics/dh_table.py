@@ -23,7 +23,8 @@ from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.frames import pose
 from robokin.kinematics.common_normal import FAR_FEET, PARALLEL, NormalStep, normal_step, turn, turn_and_shift
 from robokin.model import CoupledRobot, Joint, JointType, Robot, expect_robot
-from robokin.model.robot import NO_LIMITS, Convention, row_constants
+from robokin.model.graph import NO_LIMITS
+from robokin.model.robot import Convention, row_constants
 from robokin.spatial import exact, invert
 
 CONVENTIONS = ("standard", "modified", "frames")

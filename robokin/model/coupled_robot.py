@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike
 from robokin.arrays import Array, Flags, read_only
 from robokin.brief import Brief
 from robokin.errors import InputError, shown
-from robokin.model.graph import Coupling, Graph
-from robokin.model.robot import NO_LIMITS, Joint, JointType, Robot, graph_joint, within
+from robokin.model.graph import NO_LIMITS, Coupling, Graph
+from robokin.model.robot import Joint, JointType, Robot, graph_joint, within
 
 SINGULAR = 1e-12
 """Least singular value of a square S, as a part of its greatest, at which every v still has its u in numbers."""
@@ -76,7 +76,7 @@ class Drive(Brief):
 class CoupledRobot(Robot):
     """A robot whose `rows` move as `drive` says: `joints`, `n` and `limits` are of the variables.
 
-    `motion` is the arm whose joints move one by one.
+    `free_motion` is the arm whose joints move one by one.
     """
 
     drive: Drive = field(default_factory=lambda: Drive((), np.zeros((0, 0)), np.zeros(0), np.zeros((0, 2))))
@@ -87,13 +87,8 @@ class CoupledRobot(Robot):
         return self.drive.variables
 
     @cached_property
-    def motion(self) -> Robot:
-        """The arm of the same rows whose joints move one by one, within limits of their own."""
-        return replace(self.free_motion, rows=self._rows(self.drive.limits))
-
-    @cached_property
     def free_motion(self) -> Robot:
-        """The same without limits."""
+        """The arm of the same rows whose joints move one by one, without limits."""
         free = np.tile([-np.inf, np.inf], (len(self.drive.offsets), 1))
         return Robot(
             self.name, self._rows(free), self.convention, self.id, self.description, self.source, self.units,
@@ -148,9 +143,10 @@ class CoupledRobot(Robot):
     @cached_property
     def coupled(self) -> str:
         """Which joints hang on which, in words, for messages."""
-        first = self.drive.couplings[0] if self.drive.couplings else None
-        if first is None:
-            return "its joints do not move one by one"
+        if not self.drive.couplings:
+            helical = next((row.name for row in self.rows if row.pitch), "")
+            return f"joint {shown(helical)} is helical"
+        first = self.drive.couplings[0]
         others = ", ".join(shown(name) for name, _ in first.ratios)
         return f"joint {shown(first.joint)} hangs on {others}"
 

@@ -27,6 +27,8 @@ from robokin.brief import Brief
 from robokin.errors import InputError, did_you_mean, shown
 from robokin.model.topology import Topology, topology_of
 
+NO_LIMITS = (-np.inf, np.inf)
+
 GREATEST_RATIO = 1e9
 """What couplings may multiply a value by, and add to it [rad | m]: gears are far below, and products of a few stay
 numbers."""
@@ -52,9 +54,9 @@ class GraphJoint(Brief):
     after: Array = field(default_factory=lambda: np.eye(4))
     pitch: float = 0.0
     zero: float = 0.0
-    limits: tuple[float, float] = (-np.inf, np.inf)
+    limits: tuple[float, float] = NO_LIMITS
     row: int = 0
-    motion_limits: tuple[float, float] = (-np.inf, np.inf)
+    motion_limits: tuple[float, float] = NO_LIMITS
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -201,6 +203,15 @@ class Graph(Brief):
                 expected = f"expected ratios and offsets that make less than {GREATEST_RATIO:g}"
                 raise InputError(f"the couplings of joint {shown(name)} multiply its values too far, {expected}")
         return read_only(S), read_only(o)
+
+    @cached_property
+    def value_limits(self) -> Array:
+        """(m, 2) limits of the joints' values themselves [rad | m]: of the motion, and of what follows its own too."""
+        following = {coupling.joint for coupling in self.couplings if not coupling.own}
+        joints = [self.joints[number] for number in self.moving]
+        own = np.array([joint.motion_limits for joint in joints]).reshape(-1, 2)
+        led = np.array([joint.limits if joint.name in following else NO_LIMITS for joint in joints]).reshape(-1, 2)
+        return read_only(np.stack([np.maximum(own[:, 0], led[:, 0]), np.minimum(own[:, 1], led[:, 1])], axis=1))
 
     def _value_of(self, name: str) -> int:
         """The place of a joint's value among the values."""

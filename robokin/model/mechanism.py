@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Literal
@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from robokin.arrays import Array, read_only
-from robokin.brief import Answer, Brief
+from robokin.brief import Brief, Described
 from robokin.errors import Note, shown
 from robokin.expected import expect_kind
 from robokin.model.blueprint import AssemblyMode
@@ -93,7 +93,7 @@ class MechanismJoint(Brief):
 
 
 @dataclass(frozen=True, eq=False)
-class Mechanism(Answer):
+class Mechanism(Described):
     """Links, the joints between them, the link that stands still, and the one that the others serve, if named.
 
     `ground_named` says whether the ground is named as such, or just the first link. `expected` is what the source says:
@@ -150,11 +150,6 @@ class Mechanism(Answer):
                 for a, b in ends
             ]
         return Graph(self.links, tuple(joints), self.links.index(self.ground))
-
-    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
-        """Copied and pickled by its fields: the read-only view of a mapping cannot be pickled."""
-        values = (getattr(self, part.name) for part in fields(self))
-        return type(self), tuple(dict(value) if isinstance(value, MappingProxyType) else value for value in values)
 
     def __repr__(self) -> str:
         """A line that names the mechanism."""

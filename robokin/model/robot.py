@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 from types import MappingProxyType
@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array, Flags, read_only
-from robokin.brief import Answer, Brief
+from robokin.brief import Brief, Described
 from robokin.errors import InputError, Note, shown
 from robokin.expected import expect_kind, expect_numbers
-from robokin.model.graph import Graph, GraphJoint, Tip
+from robokin.model.graph import NO_LIMITS, Graph, GraphJoint, Tip
 from robokin.spatial import exact, invert, translation_transform, z_to
 from robokin.spatial.dh import modified_dh, standard_dh
 from robokin.units import Units
@@ -26,8 +26,6 @@ Convention = Literal["standard", "modified", "frames"]
 LIMIT_TOLERANCE = 1e-9
 """A joint value this far [rad | m] outside its limits is still within: limits are inclusive, and a
 value that went through a change of units or a solver lands within rounding of them."""
-
-NO_LIMITS = (-np.inf, np.inf)
 
 HALF_TURN = np.diag([1.0, -1.0, -1.0, 1.0])
 """F, half a turn about x; its own inverse."""
@@ -111,7 +109,7 @@ class Joint(Brief):
 
 
 @dataclass(frozen=True, eq=False)
-class Robot(Answer):
+class Robot(Described):
     """A serial chain: T = base · row 1 · … · row m · tool, as the description gives it.
 
     `rows` are all rows of the table, `joints` those with a variable, in the order of q. `texts` are the
@@ -200,11 +198,6 @@ class Robot(Answer):
                 f"q: found an array of shape {q.shape}, expected (..., {self.n}): one value for each joint"
             )
         return within(self.limits, q)
-
-    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
-        """Copied and pickled by its fields: the read-only view of a mapping cannot be pickled."""
-        values = (getattr(self, part.name) for part in fields(self))
-        return type(self), tuple(dict(value) if isinstance(value, MappingProxyType) else value for value in values)
 
     def __repr__(self) -> str:
         """A line that names the robot."""

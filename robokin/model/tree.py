@@ -7,7 +7,7 @@ order of the description.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array, Flags, read_only
-from robokin.brief import Answer
+from robokin.brief import Described
 from robokin.errors import InputError, Note, shown
 from robokin.expected import expect_kind, expect_numbers
 from robokin.model.coupled_robot import CoupledRobot, drive_of, driven
@@ -36,7 +36,7 @@ NO_SHIFT = 1e-15
 
 
 @dataclass(frozen=True, eq=False)
-class Tree(Answer):
+class Tree(Described):
     """Links with joints between them, and the frames on them that are asked for (`graph.tips`).
 
     `poses` are named configurations (n,); `notes` say what in the description looks like a slip.
@@ -91,20 +91,18 @@ class Tree(Answer):
         Those of joints that follow one other joint alone are among them: the range is what all allow.
         """
         limits = np.array([joint.limits for joint in self.joints]).reshape(self.n, 2)
-        following = {coupling.joint for coupling in self.graph.couplings if not coupling.own}
         S, o = self.graph.value_map
         for place, number in enumerate(self.graph.moving):
             (led,) = np.nonzero(S[place])
-            joint = self.graph.joints[number]
             if len(led) != 1:
                 continue
-            for bounds in (joint.motion_limits, joint.limits)[: 1 + (joint.name in following)]:
-                implied = sorted((bound - o[place]) / S[place, led[0]] for bound in bounds)
-                low, high = limits[led[0]]
-                limits[led[0]] = max(low, implied[0]), min(high, implied[1])
+            implied = sorted((bound - o[place]) / S[place, led[0]] for bound in self.graph.value_limits[place].tolist())
+            low, high = limits[led[0]]
+            limits[led[0]] = max(low, implied[0]), min(high, implied[1])
             if limits[led[0], 0] > limits[led[0], 1]:
+                name = self.graph.joints[number].name
                 raise InputError(
-                    f"joint {shown(joint.name)} follows {shown(self.joints[led[0]].name)}, and no value is within "
+                    f"joint {shown(name)} follows {shown(self.joints[led[0]].name)}, and no value is within "
                     "the limits of both, expected limits that agree"
                 )
         return read_only(limits)
@@ -126,8 +124,7 @@ class Tree(Answer):
         """
         values = self.values_of(q)
         S, o = self.graph.value_map
-        own = np.array([self.graph.joints[number].motion_limits for number in self.graph.moving]).reshape(-1, 2)
-        return within(self.limits, values) & within(own, values @ S.T + o)
+        return within(self.limits, values) & within(self.graph.value_limits, values @ S.T + o)
 
     def values_of(self, q: ArrayLike) -> Array:
         """q: (..., n) [rad | m] as an array (..., n) of floats.
@@ -200,11 +197,6 @@ class Tree(Answer):
                     f"joint {shown(joint.name)} on the way to {shown(tip)} is {shown(joint.type)}, "
                     "expected revolute, prismatic and helical joints"
                 )
-
-    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
-        """Copied and pickled by its fields: the read-only view of a mapping cannot be pickled."""
-        values = (getattr(self, part.name) for part in fields(self))
-        return type(self), tuple(dict(value) if isinstance(value, MappingProxyType) else value for value in values)
 
     def __repr__(self) -> str:
         """A line that names the tree."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from robokin.brief import Answer
+from robokin.brief import Described
 from robokin.errors import Note, shown
 from robokin.expected import expect_kind
 from robokin.units import Units
@@ -37,7 +37,7 @@ class Wheel:
 
 
 @dataclass(frozen=True, eq=False)
-class WheeledBase(Answer):
+class WheeledBase(Described):
     """A rigid base on wheels on a plane; `parallel` says that its steered wheels always point the same way."""
 
     name: str
@@ -63,11 +63,6 @@ class WheeledBase(Answer):
         for wheel in self.wheels:
             counts[wheel.type] = counts.get(wheel.type, 0) + 1
         return ", ".join(f"{count} {kind}" for kind, count in counts.items())
-
-    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
-        """Copied and pickled by its fields: the read-only view of a mapping cannot be pickled."""
-        values = (getattr(self, part.name) for part in fields(self))
-        return type(self), tuple(dict(value) if isinstance(value, MappingProxyType) else value for value in values)
 
     def __repr__(self) -> str:
         """A line that names the base."""

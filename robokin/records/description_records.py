@@ -97,10 +97,14 @@ def robot_record(robot: Robot, units: Units) -> dict[str, Any]:
     """All that is known of a robot, in the given units."""
     structure = structure_of(robot)
     own = {joint.name: f"q{number}" for number, joint in enumerate(robot.joints, start=1)}
+    left = {joint.name: joint.limits for joint in robot.joints}  # those that what follows a joint leaves it
     rows = [
-        _row_record(i, row, own.get(row.name) if row.moves else None, robot.convention, units)
+        _row_record(
+            i, replace(row, limits=left.get(row.name, row.limits)) if row.moves else row,
+            own.get(row.name) if row.moves else None, robot.convention, units,
+        )
         for i, row in enumerate(robot.rows, start=1)
-    ]
+    ]  # fmt: skip
     coupled = {"couplings": _couplings(robot, units)} if isinstance(robot, CoupledRobot) else {}
     factors = joint_factors(robot, units)
     return {
@@ -171,6 +175,8 @@ def _row_record(i: int, row: Joint, variable: str | None, convention: str, units
     record["sense"] = row.sense if row.moves else None
     if row.pitch:
         record["pitch"] = in_length(row.pitch * 2.0 * np.pi)
+    if np.isfinite(row.motion_limits).all():
+        record["motion_limits"] = [own(end) for end in row.motion_limits]
     low, high = row.limits
     record["limits"] = None if np.isinf(low) else [own(low), own(high)]
     return record
@@ -244,7 +250,8 @@ def links_record(tree: Tree, units: Units) -> dict[str, Any]:
     joints: list[dict[str, Any]] = []
     for number in graph.moving:
         joint = graph.joints[number]
-        limits = None if np.isinf(joint.limits).all() else joint.limits
+        # Of a variable those that what follows it leaves.
+        limits = tree.limits[variables[number] - 1] if number in variables else np.array(joint.limits)
         joints.append(
             {
                 "i": len(joints) + 1,
@@ -253,7 +260,7 @@ def links_record(tree: Tree, units: Units) -> dict[str, Any]:
                 "variable": f"q{variables[number]}" if number in variables else None,
                 "parent": graph.links[joint.parent],
                 "child": graph.links[joint.child],
-                "limits": None if limits is None else in_units(np.array(limits), factor(joint.name)).tolist(),
+                "limits": None if np.isinf(limits).all() else in_units(limits, factor(joint.name)).tolist(),
                 "follows": hangs(joint.name),
             }
         )

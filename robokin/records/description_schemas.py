@@ -124,7 +124,12 @@ def _row() -> Schema:
             "sense": maybe(whole("1, or -1 where the variable enters with the other sign.", -1), "of a fixed row"),
             "limits": limits,
         },
-        frames | cells | {"pitch": number("What a helical row advances in a turn [length].")},
+        frames
+        | cells
+        | {
+            "pitch": number("What a helical row advances in a turn [length]."),
+            "motion_limits": numbers("Least and greatest value of the joint itself [joint].", 2),
+        },
     )
 
 

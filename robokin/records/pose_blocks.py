@@ -10,9 +10,10 @@ from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.kinematics.forward import forward_kinematics, row_frames
 from robokin.kinematics.tips import tip_poses
-from robokin.model import Joint, Robot, Tree
+from robokin.model import CoupledRobot, Joint, Robot, Tree
 from robokin.model.graph import GraphJoint
-from robokin.model.joint_units import joint_factors
+from robokin.model.joint_units import in_units, joint_factors
+from robokin.model.robot import within
 from robokin.number_text import show_range
 from robokin.records.pose_records import PoseBlock, poses_in
 from robokin.units import Units
@@ -70,17 +71,48 @@ class PoseMaker:
         return maker
 
     def outside_notes(self, q: Array) -> Iterator[str]:
-        """A sentence for each joint value of a few configurations (m, n) that is outside its limits."""
+        """A sentence for each value of a few configurations (m, n) that is outside its limits.
+
+        Beside the joints' these are the motions of those that hang on others, where limits of their own bound them.
+        """
         for number, values in enumerate(q, start=1):
             which = f"configuration {number}: " if len(q) > 1 else ""
+            si = values * self.factors
             for i, joint in enumerate[Joint | GraphJoint](self.robot.joints):
-                alone = np.clip(np.zeros(self.robot.n), *self.robot.limits.T)
-                alone[i] = values[i] * self.factors[i]
-                if not self.robot.within_limits(alone):
-                    unit = self.units.angle if self.robot.revolute[i] else self.units.length
+                if not within(self.robot.limits[i : i + 1], si[i : i + 1]):
                     name = "" if joint.name == str(i + 1) else f" ({joint.name})"
-                    limits = show_range(*(limit / self.factors[i] for limit in joint.limits))
-                    yield f"{which}joint {i + 1}{name} = {values[i]:.12g} {unit} is outside its limits {limits}"
+                    turns = bool(self.robot.revolute[i])
+                    yield f"{which}joint {i + 1}{name} {self._outside(si[i], self.robot.limits[i], turns)}"
+            for name, value, limits, turns in self._motions(si):
+                if not within(limits[None], np.array([value])):
+                    yield f"{which}the motion of joint {name} {self._outside(value, limits, turns)}"
+
+    def _motions(self, q: Array) -> Iterator[tuple[str, float, Array, bool]]:
+        """Of a configuration (n,) [rad | m] each motion that several joints make and that has limits of its own.
+
+        Its joint's name, its value, the limits (2,), and whether it turns. What one alone makes counts in its limits.
+        """
+        robot = self.robot
+        if isinstance(robot, CoupledRobot):
+            S, o, limits = robot.drive.S, robot.drive.offsets, robot.drive.limits
+            moved = [(joint.name, bool(turns)) for joint, turns in zip(
+                robot.free_motion.joints, robot.free_motion.revolute, strict=True)]  # fmt: skip
+        elif isinstance(robot, Tree):
+            (S, o), limits = robot.graph.value_map, robot.graph.value_limits
+            moved = [(joint.name, joint.turns) for joint in map(robot.graph.joints.__getitem__, robot.graph.moving)]
+        else:
+            return
+        bounded = np.isfinite(limits).any(axis=1) & (np.count_nonzero(S, axis=1) > 1)
+        for i in np.flatnonzero(bounded).tolist():
+            name, turns = moved[i]
+            yield name, float(S[i] @ q + o[i]), limits[i], turns
+
+    def _outside(self, value: float, limits: Array, turns: bool) -> str:
+        """`= 200 deg is outside its limits -170 .. 170`, of a value and limits (2,) [rad | m]."""
+        factor = self.units.radians if turns else self.units.metres
+        unit = self.units.angle if turns else self.units.length
+        low, high = (float(in_units(np.array(end), factor)) if np.isfinite(end) else float(end) for end in limits)
+        return f"= {value / factor:.12g} {unit} is outside its limits {show_range(low, high)}"
 
     def outside_summary(self) -> str | None:
         """A sentence on the configurations of a stream that were outside the limits; None if none was."""

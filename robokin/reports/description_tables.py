@@ -57,8 +57,7 @@ def robot_table(record: dict[str, Any]) -> bytes:
         some = "some of infinitely many solutions" if record["redundancy"] else "solutions, perhaps not all"
         whole = "every solution" if inverse["complete"] else some
         entries.append(("inverse", f"{inverse['method']}: {inverse['reason']}; {whole}"))
-    for coupling in record.get("couplings", ()):
-        entries.append(("coupled", coupling_in_short(coupling)))
+    entries += _coupled_entries(record)
     if record["parameters"]:
         listed = ", ".join(f"{name} = {show(value)}" for name, value in record["parameters"].items())
         entries.append(("parameters", listed))
@@ -77,6 +76,17 @@ def robot_table(record: dict[str, Any]) -> bytes:
     entries += [("source", record["source"])] if record["source"] else []
     rest = f"{record['convention']} convention, lengths in {units['length']}, angles in {units['angle']}"
     return render(heading(record["name"], rest), "", drawn, "", pairs(entries))
+
+
+def _coupled_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
+    """What joints hang on, and how those move that are not as what is typed."""
+    entries = [("coupled", coupling_in_short(coupling)) for coupling in record.get("couplings", ())]
+    for row in record["rows"]:
+        if "motion_limits" in row:
+            entries.append(("moves", f"{row['name']} itself {show_range(*row['motion_limits'])}"))
+        if "pitch" in row:
+            entries.append(("advances", f"{row['name']} {show(row['pitch'])} {record['units']['length']} a turn"))
+    return entries
 
 
 def coupling_in_short(coupling: dict[str, Any]) -> str:

@@ -92,6 +92,28 @@ def test_other_commands_take_them(call, write):
     assert over["fraction"] == pytest.approx(0.9)
 
 
+def test_a_motion_outside_its_limits_is_named_and_no_other(call, write):
+    # J3 = -60 - 100, though each value that is typed is within its own limits.
+    err = call("fk", write(PENDANT), "--q", "0,100,-60,0,0,0").err
+    assert err == "robokin: the motion of joint J3 = -160 deg is outside its limits -90 .. 90\n"
+    assert call("fk", write(PENDANT), "--q", "0,150,100,0,0,0").err == (
+        "robokin: joint 2 (J2) = 150 deg is outside its limits -60 .. 140\n"
+    )
+    # What one joint alone moves bounds that joint: 60 deg of the follower are 90 of its leader.
+    assert call("fk", write(FINGER), "--q", "0,0,99").err == (
+        "robokin: joint 3 (pip) = 99 deg is outside its limits 0 .. 90\n"
+    )
+
+
+def test_limits_that_are_shown_are_those_that_are_left(call, write):
+    finger = call("show", write(FINGER), "--json").json
+    assert [row["limits"] for row in finger["rows"][2:]] == [[0.0, 90.0], [0.0, 60.0]]
+    pendant = call("show", write(PENDANT), "--json").json
+    assert pendant["rows"][2]["motion_limits"] == [-90.0, 90.0]
+    assert "J3 itself -90 .. 90" in call("show", write(PENDANT)).text
+    assert "spindle 20 mm a turn" in call("show", write(SCREW)).text
+
+
 @pytest.mark.parametrize(
     ("command", "said"),
     [

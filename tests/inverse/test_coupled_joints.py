@@ -273,3 +273,14 @@ def test_slides_without_limits_that_turn_with_joints(couplings, bounded):
                 assert np.all(np.abs(found[:, [0, 2]]) <= np.pi)
                 # A turn of the first joint brings another slide: of these there is no end.
                 assert result.complete == (couplings[0][0] != 2)
+
+
+def test_without_limits_a_ratio_has_no_end_of_turns():
+    # 13 to 72: after each full turn of the fifth joint's drive the sixth's is elsewhere.
+    limits = np.tile([-np.pi, np.pi], (6, 1))
+    arm = coupled(robokin.load("puma560"), [(6, 5, 13 / 72, True)], limits)
+    T = robokin.forward_kinematics(arm, np.full(6, 0.3))
+    assert robokin.solve_ik(arm, T).complete
+    free = robokin.solve_ik(arm, T, limits=False)
+    assert not free.complete
+    assert free.basis is None
