@@ -128,8 +128,14 @@ def _own_joints(analysis: Analysis, T: Array, found: Found) -> Found:
     q, position, angle = found.q[:, :own], found.position.copy(), found.angle.copy()
     if not len(q):
         return Found(found.index, q, position, angle)
-    steps = 2 if np.all(size <= VIRTUAL) else 8 if not family.any() else 25
-    q, error = descend(own_chain, T[found.index], q, analysis.size, steps=steps)
+    # As many as a target alone would take: what it comes to is not to depend on the others.
+    rough = np.bincount(found.index, size[still | family] > VIRTUAL, len(T)) > 0
+    distant = np.bincount(found.index, family[still | family], len(T)) > 0
+    steps = np.where(distant, 25, np.where(rough, 8, 2))[found.index]
+    error = np.empty((len(q), 6))
+    for count in np.unique(steps).tolist():
+        mine = np.flatnonzero(steps == count)
+        q[mine], error[mine] = descend(own_chain, T[found.index[mine]], q[mine], analysis.size, steps=count)
     position = np.linalg.norm(error[:, :3], axis=1) * analysis.size
     angle = np.linalg.norm(error[:, 3:], axis=1)
     closes = (position <= closing_distances(own_chain, q, analysis.size)) & (angle <= CLOSES)

@@ -203,9 +203,13 @@ def differs_alone(robot, scale, result, alone):
         return f"{len(result.families)} self-motions, alone {len(alone.families)}"
     if not len(a):
         return ""
-    tolerance = np.where(least_singular_value(robot, scale, a) >= REGULAR, EXACTLY, DOUBLE)
-    # Whole turns count here: two answers to one pose are the same numbers.
-    off = np.max(np.abs(a - b) / scale.unit, axis=1)
+    regular = least_singular_value(robot, scale, a) >= REGULAR
+    tolerance = np.where(regular, EXACTLY, DOUBLE)
+    # Whole turns count here: two answers to one pose are the same numbers. Of singular solutions, which are known to
+    # half of their digits, -180 and 180 degrees are the same.
+    gap = a - b
+    turned = np.where(robot.revolute & ~regular[:, None], gap - 2 * np.pi * np.round(gap / (2 * np.pi)), gap)
+    off = np.max(np.abs(turned) / scale.unit, axis=1)
     return f"a solution is off by {np.max(off):.1e}" if np.any(off > tolerance) else ""
 
 

@@ -1,7 +1,8 @@
 """Curves of configurations that reach one pose, as points in order.
 
 Statement. Given configurations and the directions of the curves that leave them, follow the curves.
-Derivation. Where two joints have one axis the curve is a straight line, known exactly (`null_motion.coaxial_line`).
+Derivation. Where two joints have one axis, or only joints slide, the curve is a straight line, known exactly
+(`null_motion.straight_line`).
 All others are followed step by step (`fronts`).
 Degenerate case. Lines of sliding joints never close: they end at bounds.
 
@@ -18,9 +19,9 @@ from robokin.arrays import Array, Flags
 from robokin.inverse.self_motion.fronts import REACH, TRIAL_STEPS, Fronts
 from robokin.inverse.self_motion.null_motion import (
     CLOSES,
-    coaxial_line,
     errors,
     scale_of,
+    straight_line,
 )
 from robokin.kernel.chain import Chain
 
@@ -80,7 +81,7 @@ def trace_many(
     s, n = x.shape
     locked = np.zeros((s, n), dtype=bool) if locked is None else locked
     _, J = errors(chain, T, x, size)
-    lines = [coaxial_line(J[i], ways[i]) for i in range(s)]
+    lines = [straight_line(J[i], ways[i]) for i in range(s)]
     curves: list[Curve | None] = [None] * s
     for i, line in enumerate(lines):
         if line is not None:
@@ -115,7 +116,8 @@ def _line(chain: Chain, T: Array, x: Array, line: Array, size: float, bounds: Ar
     if turns:
         s = np.linspace(-np.pi, np.pi, 61)
     else:
-        low, high = np.full(chain.n, -REACH), np.full(chain.n, REACH)
+        reach = REACH + np.where(np.abs(x) > REACH, np.abs(x), 0.0)
+        low, high = -reach, reach
         if bounds is not None:
             low, high = np.maximum(low, bounds[:, 0] / scale), np.minimum(high, bounds[:, 1] / scale)
         with np.errstate(divide="ignore"):

@@ -112,8 +112,9 @@ class Fronts:
         self.history: list[tuple[Index, Array, Array]] = []
         self.locks = np.where(np.concatenate([locked, locked])[:, :, None], np.eye(self.n), 0.0)
         self.locking = bool(locked.any())
-        reach = np.where(chain.revolute, np.inf, REACH)
-        self.low, self.high = np.min(x, axis=0) - reach, np.max(x, axis=0) + reach
+        # What one curve comes to is not to depend on what others are followed beside it.
+        reach = np.where(chain.revolute, np.inf, REACH) + np.where(np.abs(self.x) > REACH, np.abs(self.x), 0.0)
+        self.low, self.high = -reach, reach
         if bounds is not None:
             self.low = np.maximum(self.low, bounds[:, 0] / self.scale)
             self.high = np.minimum(self.high, bounds[:, 1] / self.scale)
@@ -121,7 +122,8 @@ class Fronts:
         _, J = errors(chain, self.T, self.x, size)
         values = np.linalg.svd(np.concatenate([J, self.locks], axis=1), compute_uv=False)[:, self.n - 2]
         self.second = values
-        self.steps = SLOW_STEPS if np.any(values <= THIN) else STEPS
+        self.slow = values <= THIN
+        self.slow = np.tile(self.slow[: self.s] | self.slow[self.s :], 2)
         self.h = np.where(values > THIN, np.clip(2.0 * values, APPROACH, FIRST), FIRST)
 
     def run(self, trial: Flags) -> None:
@@ -188,7 +190,8 @@ class Fronts:
         normals = t[:, None]
         if self.locking:
             normals = np.concatenate([normals, self.locks[rows]], axis=1)
-        return corrected(self.chain, self.T[rows], x, self.size, normals, self.steps, zero=THIN)
+        T, steps = self.T[rows], np.where(self.slow[rows], SLOW_STEPS, STEPS)
+        return corrected(self.chain, T, x, self.size, normals, steps, zero=THIN)
 
     def _step(self, rows: Index) -> None:
         x, t, h = self.x[rows], self.t[rows], self.h[rows, None]
@@ -213,7 +216,7 @@ class Fronts:
         self.x[went], self.t[went], self.second[went], self.moved_on[went] = new[good], ahead[good], second[good], 0
         self.count[went] += 1
         self.history.append((went, new[good], ahead[good]))
-        beyond = np.any((new[good] < self.low) | (new[good] > self.high), axis=1)
+        beyond = np.any((new[good] < self.low[went]) | (new[good] > self.high[went]), axis=1)
         self.h[failed] *= 0.5
         self.bend[failed] = 0.0
         self._end(went[beyond], "bound")

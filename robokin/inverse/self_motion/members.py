@@ -19,8 +19,9 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.closed_form.spherical_wrist import SphericalTriple
 from robokin.inverse.self_motion.curve_tracing import Curve
+from robokin.inverse.self_motion.fronts import REACH
 from robokin.inverse.self_motion.nearest_member import members_near, nearest_on_each
-from robokin.inverse.self_motion.null_motion import ZERO, errors
+from robokin.inverse.self_motion.null_motion import ZERO, corrected, errors, on_the_way_home, scale_of
 from robokin.inverse.self_motion.solution_sets import Families, families
 from robokin.inverse.verify import CLOSES, Found, with_ones_within, within_limits
 from robokin.inverse.window import least_singular_values
@@ -114,10 +115,11 @@ def _once(
 ) -> tuple[Found, dict[int, list[SelfMotion]], Index, Index]:
     """`listed_once`, whatever the limits say of those that are left out."""
     least = least_singular_values(chain, found.q, size)
+    found, least, astray = _within_reach(chain, T, found, least, size)
     found, least = _thinned(chain, found, least, size)
     singular = np.flatnonzero(least < ZERO)
     if not len(singular):
-        return found, {}, np.empty(0, dtype=np.intp), np.zeros(len(T), dtype=np.intp)
+        return found, {}, astray, np.zeros(len(T), dtype=np.intp)
     q, index = found.q.copy(), found.index
     position, angle = found.position.copy(), found.angle.copy()
     sets = families(chain, T, q[singular], size, index[singular], known)
@@ -153,7 +155,7 @@ def _once(
     return (
         Found(index, q, position, angle).pick(keep),
         motions,
-        np.unique(np.concatenate([unclear, crowded, np.array([*lost, *sets.open], dtype=np.intp)])),
+        np.unique(np.concatenate([unclear, crowded, astray, np.array([*lost, *sets.open], dtype=np.intp)])),
         np.bincount(index[beside], minlength=len(T)),
     )
 
@@ -189,6 +191,37 @@ def _stand_ins(
             stands.append(first)
             curves.append(curve)
     return stands, curves, lost
+
+
+def _within_reach(chain: Chain, T: Array, found: Found, least: Array, size: float) -> tuple[Found, Array, Index]:
+    """The solutions and their least singular values with none on far ends of self-motions, and the targets (k,) of
+    which some were left out.
+
+    Of slides without limits a self-motion has no end, and what is found of it may be anywhere. On a straight line it is
+    brought near. Curves come from where they are followed, so that of targets with other singular solutions no
+    member beyond is needed.
+    """
+    slides = ~chain.revolute
+    far = np.flatnonzero((least < ZERO) & np.any(np.abs(found.q[:, slides]) > REACH * size, axis=1))
+    if not len(far):
+        return found, least, far
+    q, position, angle, least = found.q.copy(), found.position.copy(), found.angle.copy(), least.copy()
+    poses, scale = T[found.index[far]], scale_of(chain, size)
+    _, J = errors(chain, poses, q[far] / scale, size)
+    home, brought = on_the_way_home(chain, J, q[far] / scale)
+    x, off, _ = corrected(chain, poses, home, size)
+    brought &= off <= CLOSES
+    near = far[brought]
+    q[near] = (x * scale)[brought]
+    error, _ = error_and_jacobian(chain, poses[brought], q[near], size)
+    position[near], angle[near] = np.linalg.norm(error[:, :3], axis=1) * size, np.linalg.norm(error[:, 3:], axis=1)
+    least[near] = least_singular_values(chain, q[near], size)
+    far = far[~brought]
+    others = np.setdiff1d(np.flatnonzero(least < ZERO), far)
+    far = far[np.isin(found.index[far], found.index[others])]
+    keep = np.ones(len(q), dtype=bool)
+    keep[far] = False
+    return Found(found.index, q, position, angle).pick(keep), least[keep], np.unique(found.index[far])
 
 
 def _thinned(chain: Chain, found: Found, least: Array, size: float) -> tuple[Found, Array]:

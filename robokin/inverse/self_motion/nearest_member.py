@@ -25,6 +25,9 @@ from robokin.inverse.self_motion.solution_sets import on_curve, turned_gap
 from robokin.inverse.self_motion.track import KINK, PARTS, Tracks, least
 from robokin.kernel.chain import Chain
 
+SLACK = 1.1
+"""What a curve's pieces are longer than their chords, at most."""
+
 CANDIDATES = 4
 """Local minima of the move from a wish that are refined on each piece."""
 
@@ -37,14 +40,18 @@ REACHES = 1e-9
 STRAIGHT = 1e-6
 """Tangents that differ by less may be those of a straight line: of joints that have one axis."""
 
-LINE_STEP = 0.3
-"""How far [rad | size] a straight curve is looked at from one of its points: they are 0.15 apart."""
-
-LINE_CUTS, LINE_ROUNDS = 32, 13
-"""Parts that it is cut into in each round, of which two remain: 1e-16 of the way in the end."""
+LINE_CUTS, LINE_ROUNDS = 32, 14
+"""Parts that a straight curve beside a point is cut into in each round, of which two remain: 1e-16 of it in the end."""
 
 OTHERS = 1e-7
 """Weight of the other joints' moves: it shifts the greatest move by less than anyone asks for."""
+
+TIE, TIE_OF_OTHERS = 1e-9, 1e-6
+"""Greatest moves, and lengths of all moves, that differ by less [rad | size] are equal: of mirror images of each other
+one is always the same."""
+
+ALIKE = 1e-4
+"""Joint values [rad | size] that differ by less do not tell such members apart."""
 
 STILL = 1e-12
 """Differences of the greatest move below this [rad | size] are rounding of joints that stand still."""
@@ -83,7 +90,7 @@ def nearest_on_each(
             rows, tracked = np.concatenate([rows, more]), np.append(tracked, np.full(len(more), np.searchsorted(of, k)))
         if len(rows):
             # Of a surface the points of all curves are compared as those of one.
-            best = rows[np.argmin(moves(tracks, np.full(len(rows), tracked[0]), rows, wish))]
+            best = rows[_nearest_of_each(tracks, np.full(len(rows), tracked[0]), rows, wish)[0]]
             answers[k] = _turned_near(tracks, best, wish)
     return answers
 
@@ -93,9 +100,9 @@ def members_near(
 ) -> list[Array | None]:
     """Members (own,) [rad | m] within the limits (own, 2) that are about as near to the wish (own,) as any.
 
-    One of each of some self-motions at T (k, 4, 4). It is the nearest one beside the nearest of the points that the
-    curve was followed by, which spares most of what `nearest_on` does; that is asked where none of those points is
-    within the limits.
+    One of each of some self-motions at T (k, 4, 4). It is the nearest one between those points that the curve was
+    followed by that may have it between them, which spares most of what `nearest_on` does; that is asked where none of
+    the points is within the limits, or these cut what may be nearest.
     """
     answers: list[Array | None] = [None] * len(curves)
     tracks = Tracks(curves, chain, T, limits, size)
@@ -104,11 +111,14 @@ def members_near(
     x = wish / tracks.scale[: tracks.own]
     usable = np.flatnonzero(inside & simple[of])
     if len(usable):
-        far = np.full(len(of), np.inf)
-        far[usable] = moves(tracks, of[usable], tracks.points[usable], x)
-        order = np.lexsort((far, of))
-        best = order[np.searchsorted(of[order], np.flatnonzero(simple))]
-        for k, member in zip(np.flatnonzero(simple).tolist(), _beside(tracks, best, inside, x), strict=True):
+        far = moves(tracks, of, tracks.points, x)
+        best = _nearest_points(of, far, usable)
+        low = _lower_between(tracks, far, inside, best)
+        # Where the limits cut what may be nearest its ends are needed.
+        cut = np.unique(of[low[inside[low] != inside[low + 1]]])
+        simple[cut] = False
+        best, low = best[simple[of[best]]], low[inside[low] & simple[of[low]]]
+        for k, member in zip(of[best].tolist(), _beside(tracks, best, low, x), strict=True):
             answers[k] = _turned_near(tracks, member, x)
     rest = np.flatnonzero(~simple)
     if len(rest):
@@ -118,26 +128,82 @@ def members_near(
     return answers
 
 
-def _beside(tracks: Tracks, best: Index, inside: Flags, wish: Array) -> Array:
-    """The points (m, n) within the limits nearest to the wish beside the points `best` (m,), each of another curve."""
+def _nearest_of_each(tracks: Tracks, of: Index, x: Array, wish: Array) -> Index:
+    """Of each curve, in order, the row of x (m, n) that is nearest to the wish (own,); of: (m,) the rows' curves.
+
+    Of several that are equally near the one whose first joints' values are greatest.
+    """
+    which, index = np.unique(of, return_inverse=True)
+    greatest, others = _parts_of_moves(tracks, of, x, wish)
+    order = np.lexsort((greatest + OTHERS * others, index))
+    best = order[np.searchsorted(index[order], np.arange(len(which)))]
+    tied = np.flatnonzero((greatest <= greatest[best][index] + TIE) & (others <= others[best][index] + TIE_OF_OTHERS))
+    if len(tied) == len(best):
+        return best
+    columns = np.round(-x[tied] / ALIKE).T
+    tied = tied[np.lexsort((*columns[::-1], index[tied]))]
+    return np.asarray(tied[np.unique(index[tied], return_index=True)[1]])
+
+
+def _nearest_points(of: Index, far: Array, usable: Index) -> Index:
+    """Of each curve that has usable points (u,) the one with the least move far (p,); of: (p,) the points' curves."""
+    order = usable[np.lexsort((far[usable], of[usable]))]
+    return np.asarray(order[np.unique(of[order], return_index=True)[1]])
+
+
+def _lower_between(tracks: Tracks, far: Array, inside: Flags, best: Index) -> Index:
+    """The points (k,) of curves between which and the next one the move from a wish may be less than at all points.
+
+    far: (p,) the moves to all points, inside: (p,) those within the limits; best: (m,) the nearest one of each curve
+    that counts. Between two points the greatest move is less than at both by half of what joints move from one to the
+    other, at most; beyond the limits it says nothing, as angles are turned.
+    """
     of = tracks.of_points
-    k = of[best]
-    place = best - tracks.first[k]
-    low = np.concatenate([best[place > 0] - 1, best[place < tracks.last[k]]])
-    low = low[inside[low] & inside[low + 1]]
-    rows, curve = tracks.points[best], k
+    nearest = np.full(len(tracks.last), -np.inf)
+    nearest[of[best]] = far[best]
+    step = SLACK * np.max(np.abs(np.diff(tracks.points, axis=0)), axis=1)
+    same = of[1:] == of[:-1]
+    one = np.where(inside[1:], far[1:], far[:-1]) - step
+    lowest = np.where(inside[1:] & inside[:-1], 0.5 * (far[1:] + far[:-1] - step), one)
+    return np.flatnonzero(same & (inside[1:] | inside[:-1]) & (lowest < nearest[of[:-1]]))
+
+
+def _beside(tracks: Tracks, best: Index, low: Index, wish: Array) -> Array:
+    """The points (m, n) nearest to the wish of curves of which `best` (m,) are the nearest points, sought between these
+    and between points `low` (k,) and the next ones."""
+    of = tracks.of_points
+    rows, curve = tracks.points[best], of[best]
     if len(low):
-        a = (low - tracks.first[of[low]]).astype(np.float64)
-        places, _ = least(tracks, of[low], a, a + 1.0, lambda _, k, y: moves(tracks, k, y, wish))
-        found = tracks.at(of[low], places)
+        k, first = of[low], (low - tracks.first[of[low]]).astype(np.float64)
+        a, b = _parts_of_least(tracks, k, first, wish)
+        k = k[np.isfinite(a)]
+        a, b = a[np.isfinite(a)], b[np.isfinite(b)]
+        places, _ = least(tracks, k, a, b, lambda _, k, y: moves(tracks, k, y, wish))
+        found = tracks.at(k, places)
         fits = tracks.is_inside(found)
-        rows, curve = np.concatenate([rows, found[fits]]), np.append(curve, of[low][fits])
-    far = moves(tracks, curve, rows, wish)
-    order = np.lexsort((far, curve))
-    nearest = rows[order[np.searchsorted(curve[order], k)]]
+        rows, curve = np.concatenate([rows, found[fits]]), np.append(curve, k[fits])
+    chosen = rows[_nearest_of_each(tracks, curve, rows, wish)]
     straight, on_lines = _on_lines(tracks, best, wish)
-    nearest[straight] = on_lines
-    return np.asarray(nearest)
+    chosen[straight] = on_lines
+    return np.asarray(chosen)
+
+
+def _parts_of_least(tracks: Tracks, k: Index, first: Array, wish: Array) -> tuple[Array, Array]:
+    """Of intervals from places `first` (m,) of curves k (m,), one long, the parts (a, b) that the least move may be in.
+
+    NaN for those of which others of the same curve come nearer.
+    """
+    f = np.linspace(0.0, 1.0, PARTS + 1)
+    many = np.repeat(k, PARTS + 1)
+    x, _ = tracks.cubic(many, (first[:, None] + f).reshape(-1))
+    far = moves(tracks, many, x, wish).reshape(len(k), PARTS + 1)
+    i = np.argmin(far, axis=1)
+    low = far[np.arange(len(k)), i]
+    nearest = np.full(int(np.max(k)) + 1, np.inf)
+    np.minimum.at(nearest, k, low)
+    close = low <= nearest[k] + KINK
+    a, b = first + f[np.maximum(i - 1, 0)], first + f[np.minimum(i + 1, PARTS)]
+    return np.where(close, a, np.nan), np.where(close, b, np.nan)
 
 
 def _on_lines(tracks: Tracks, best: Index, wish: Array) -> tuple[Index, Array]:
@@ -156,7 +222,13 @@ def _on_lines(tracks: Tracks, best: Index, wish: Array) -> tuple[Index, Array]:
     if not len(rows):
         return rows, np.empty((0, tracks.chain.n))
     k, t, start = k[rows], t[rows], tracks.points[best[rows]]
-    low, high = np.full(len(rows), -LINE_STEP), np.full(len(rows), LINE_STEP)
+    apart = np.append(np.linalg.norm(np.diff(tracks.points, axis=0), axis=1), 0.0)
+    before, after = (
+        np.maximum(best[rows] - 1, tracks.first[k]),
+        np.minimum(best[rows], tracks.first[k] + tracks.last[k] - 1),
+    )
+    high = 2.0 * np.maximum(apart[before], apart[after])
+    low = -high
     cuts, every, many = np.linspace(0.0, 1.0, LINE_CUTS + 1), np.arange(len(rows)), np.repeat(k, LINE_CUTS + 1)
     for _ in range(LINE_ROUNDS):
         parts = low[:, None] + (high - low)[:, None] * cuts
@@ -210,13 +282,19 @@ def moves(tracks: Tracks, k: Index, x: Array, wish: Array) -> Array:
     It is given less that of the joints that stand still: where that is the greatest the rest has all its digits. Of
     members with the same greatest move that one counts as nearer whose other joints move less.
     """
+    greatest, others = _parts_of_moves(tracks, k, x, wish)
+    return np.asarray(greatest + OTHERS * others)
+
+
+def _parts_of_moves(tracks: Tracks, k: Index, x: Array, wish: Array) -> tuple[Array, Array]:
+    """(m,) the greatest move of `moves`, and the length of all moves."""
     own = len(wish)
     gap = np.abs(nearest_turns(tracks, x, wish)[:, :own] - wish)
     standing = np.abs(nearest_turns(tracks, tracks.points[tracks.first], wish)[:, :own] - wish)
     least = np.max(np.where(tracks.still[:, :own], standing, 0.0), axis=1, initial=0.0)
     greatest = np.max(gap, axis=1) - least[k]
     greatest[np.abs(greatest) < STILL] = 0.0
-    return np.asarray(greatest + OTHERS * np.linalg.norm(gap, axis=1))
+    return greatest, np.linalg.norm(gap, axis=1)
 
 
 def _nearest_of_pieces(tracks: Tracks, wish: Array) -> tuple[Index, Array]:
@@ -248,9 +326,8 @@ def _nearest_of_pieces(tracks: Tracks, wish: Array) -> tuple[Index, Array]:
         more, _ = least(tracks, k[low], u[low], u[low + 1], lambda _, k, y: moves(tracks, k, y, wish))
         of, place = np.append(of, k[low]), np.append(place, more)
     rows = tracks.at(of, place)
-    order = np.lexsort((moves(tracks, of, rows, wish), of))
-    which, start = np.unique(of[order], return_index=True)
-    return which, rows[order[start]]
+    chosen = _nearest_of_each(tracks, of, rows, wish)
+    return of[chosen], rows[chosen]
 
 
 def _nearest_on_surface(tracks: Tracks, T: Array, curve: Curve, wish: Array) -> Array:

@@ -28,7 +28,7 @@ import math
 
 import numpy as np
 
-from robokin.arrays import Array, Flags
+from robokin.arrays import Array, Flags, Index
 from robokin.inverse.numeric.nearest import few_joints
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import limited
@@ -142,20 +142,21 @@ def corrected(
     x: Array,
     size: float,
     normals: Array | None = None,
-    steps: int = STEPS,
+    steps: int | Index = STEPS,
     settled: float = SETTLED,
     zero: float = ZERO,
 ) -> tuple[Array, Array, Array]:
     """Newton steps from x (s, n) onto the configurations that reach T: (s, 4, 4).
 
-    normals: (s, k, n), directions that x keeps its place along; settled: the error at which steps end; zero: what a
-    singular value must exceed to count. Returns x (s, n) [rad | size], the greatest part of
-    the error left (s,) and the Jacobian there (s, 6, n).
+    normals: (s, k, n), directions that x keeps its place along; steps: at most, of all or of each (s,); settled: the
+    error at which steps end; zero: what a singular value must exceed to count. Returns x (s, n)
+    [rad | size], the greatest part of the error left (s,) and the Jacobian there (s, 6, n).
     """
     e, J = errors(chain, T, x, size)
     off = np.max(np.abs(e), axis=1)
     rows = np.flatnonzero(off > settled)
-    if not len(rows) or not steps:
+    many = np.broadcast_to(np.asarray(steps), len(off))[rows]
+    if not len(rows):
         return x, off, J
     x = np.array(x)
     # What is still moved, by its rows: x, T, the equations and what the error was.
@@ -166,7 +167,7 @@ def corrected(
     if normals is not None:
         A[:, 6:] = normals[rows]
     factor, idle = np.ones(len(rows)), np.zeros(len(rows), dtype=np.intp)
-    for _ in range(steps):
+    for step in range(1, int(np.max(many)) + 1):
         dx = limited(least_squares(A, b, zero), LONGEST)
         new = here + dx * factor[:, None]
         e_new, J_new = errors(chain, target, new, size)
@@ -180,7 +181,7 @@ def corrected(
         double = (after > 0.2 * before) & (after < 0.3 * before)
         # What is left of an error in directions that are left out stays as it is.
         idle = np.where(np.abs(after - before) < IDLE * before, idle + 1, 0)
-        on = np.where(better, (after > settled) & (idle < IDLE_STEPS), factor > 1.0)
+        on = np.where(better, (after > settled) & (idle < IDLE_STEPS), factor > 1.0) & (step < many)
         factor = np.where(double, 2.0, 1.0)
         if whole:
             here, before = new, after
@@ -192,7 +193,7 @@ def corrected(
             if not on.any():
                 break
             rows, here, target, before = rows[on], here[on], target[on], before[on]
-            A, b, factor, idle = A[on], b[on], factor[on], idle[on]
+            A, b, factor, idle, many = A[on], b[on], factor[on], idle[on], many[on]
     return x, off, J
 
 
@@ -357,22 +358,47 @@ def coaxial_pairs(J: Array) -> Array:
     return np.asarray(pairs / np.sqrt(2.0))
 
 
-def coaxial_line(J: Array, way: Array) -> Array | None:
-    """The direction (n,) along which only joints with one axis trade their motion, if `way` (n,) is one; else None.
+def straight_line(J: Array, way: Array) -> Array | None:
+    """The direction (n,) along which only joints with one axis, or only slides, trade their motion, if `way` (n,) is
+    one; else None.
 
     Joints i < j with the same axis may turn against each other by any angle: what is between them turns about that
-    axis, which joint j keeps. So the line x + s way reaches the pose for all s, exactly.
+    axis, which joint j keeps. Slides keep each other's directions. So the line x + s way reaches the pose for all s,
+    exactly.
     """
     moving = np.flatnonzero(np.abs(way) > 1e-7)
+    line = np.zeros(len(way))
+    if len(moving) > 1 and not J[3:, moving].any():
+        slides = _slides_at_rest(J[:3, moving])
+        line[moving] = slides @ (slides.T @ way[moving])
+        length = np.linalg.norm(line)
+        return line / length if length > 0.5 else None
     if len(moving) != 2:
         return None
     a, b = J[:, moving[0]], J[:, moving[1]]
     sign = 1.0 if float(a @ b) > 0.0 else -1.0
     if float(np.max(np.abs(a - sign * b))) > COAXIAL:
         return None
-    line = np.zeros(len(way))
     line[moving] = np.array([1.0, -sign]) * np.sign(way[moving[0]])
     return line
+
+
+def _slides_at_rest(directions: Array) -> Array:
+    """(k, d) an orthonormal basis of what k slides with directions (3, k) do to each other without moving the tool."""
+    values, Vt = np.linalg.svd(directions)[1:]
+    return np.asarray(Vt[int(np.sum(values > COAXIAL)) :].T)
+
+
+def on_the_way_home(chain: Chain, J: Array, x: Array) -> tuple[Array, Flags]:
+    """x (s, n) with Jacobians J (s, 6, n) moved along straight lines of slides to what is nearest to their zeros, and
+    (s,) which are on such lines."""
+    slides = np.flatnonzero(~chain.revolute)
+    home, on_lines = np.array(x), np.zeros(len(x), dtype=bool)
+    for i in range(len(x)):
+        rest = _slides_at_rest(J[i][:3, slides])
+        home[i, slides] -= rest @ (rest.T @ x[i, slides])
+        on_lines[i] = rest.shape[1] > 0
+    return home, on_lines
 
 
 COAXIAL = 1e-8

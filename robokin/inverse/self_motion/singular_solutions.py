@@ -25,7 +25,6 @@ from robokin.inverse.self_motion.null_motion import (
     CLOSES,
     SLOW_STEPS,
     ZERO,
-    coaxial_line,
     cone,
     cones,
     corrected,
@@ -33,6 +32,7 @@ from robokin.inverse.self_motion.null_motion import (
     follows,
     null_spaces,
     scale_of,
+    straight_line,
 )
 from robokin.kernel.chain import Chain
 
@@ -136,7 +136,7 @@ def _follow(
     tried, index = np.concatenate([found for found, _ in cones_of]), rows[place]
     on = follows(chain, T[index], x[index], tried, size)
     # A straight line is proven, and on a surface a single direction is no curve's.
-    proven = np.array([coaxial_line(J[i], way) is not None for i, way in zip(index, tried, strict=True)], dtype=bool)
+    proven = np.array([straight_line(J[i], way) is not None for i, way in zip(index, tried, strict=True)], dtype=bool)
     surface = np.array([flat and found.shape[0] > 1 for found, flat in cones_of], dtype=bool)[place]
     doubtful = on & ~proven & ~surface
     single = np.array([flat and found.shape[0] == 1 for found, flat in cones_of], dtype=bool)[place]
@@ -213,7 +213,7 @@ def _that_lead_away(
         return []
     along = np.array([way for some in chosen for way, _ in some])
     on = leads_away(chain, T[index], x[index], along, size, np.array([locks for some in chosen for _, locks in some]))
-    on |= np.array([coaxial_line(J[i], way) is not None for i, way in zip(index, along, strict=True)])
+    on |= np.array([straight_line(J[i], way) is not None for i, way in zip(index, along, strict=True)])
     cuts = np.cumsum([len(some) for some in chosen])[:-1]
     parts = zip(ways, np.split(along, cuts), np.split(on, cuts), strict=True)
     return [some if which.all() else those[which] for some, those, which in parts]
