@@ -9,7 +9,7 @@ from robokin.brief import Answer
 from robokin.derivation.symbolic_kinematics import SymbolicKinematics, symbolic_kinematics
 from robokin.derivation.symbolic_latex import symbolic_latex
 from robokin.expected import expect_flag, expect_kind
-from robokin.model import Robot, expect_robot, expect_uncoupled
+from robokin.model import Robot, expect_robot
 from robokin.records.symbolic_records import symbolic_record
 from robokin.reports.symbolic_pages import symbolic_page
 from robokin.units import Units
@@ -77,7 +77,7 @@ def symbols(robot: Robot, numbers: bool = False, frames: bool = False, units: Un
     `numbers` writes lengths and twists as numbers, `frames` adds the frame after each row of the table. Raises
     InputError where the expressions are too long to be of use.
     """
-    robot = expect_uncoupled(expect_robot(robot))
+    robot = expect_robot(robot)
     own = robot.units if units is None else units
     expect_kind(own, Units, "units", "units, such as robokin.Units('mm', 'deg')")
     plain, every = expect_flag(numbers, "numbers"), expect_flag(frames, "frames")

@@ -39,18 +39,35 @@ def files(incomplete: str, endings: tuple[str, ...]) -> list[str]:
 
 
 def named_poses(incomplete: str) -> list[str]:
-    """Named poses of the first robot that the line names."""
+    """Named poses of the first robot or tree that the line names."""
+    found = _named_first()
+    poses: list[str] = [*getattr(found, "poses", ())]
+    return [name for name in poses if name.startswith(incomplete)]
+
+
+def tips(incomplete: str) -> list[str]:
+    """The tips of the first tree that the line names."""
+    found: list[str] = [*getattr(_named_first(), "tips", ())]
+    return [name for name in found if name.startswith(incomplete)]
+
+
+def tip_targets(incomplete: str) -> list[str]:
+    """The same, each with the sign behind which its target stands."""
+    return [f"{name}=" for name in tips(incomplete)]
+
+
+def _named_first() -> object:
+    """The first robot or whatever else the line names; None where there is none that can be read."""
     from robokin.errors import RobokinError
-    from robokin.formats.library import library_names, load_any
-    from robokin.model import Robot
+    from robokin.formats.library import FOREIGN, library_names, load_any
 
     library = {name.casefold() for name in library_names()}
     for word in _line():
-        if word.casefold() in library or word.casefold().endswith(ENDINGS):
+        if word.casefold() in library or word.casefold().endswith((*ENDINGS, *FOREIGN)):
             with contextlib.suppress(RobokinError, OSError):
-                robot = load_any(word)
-                return [name for name in robot.poses if name.startswith(incomplete)] if isinstance(robot, Robot) else []
-    return []
+                return load_any(word)
+            return None
+    return None
 
 
 def _line() -> list[str]:

@@ -114,6 +114,13 @@ class DescriptionOptions(UnitOptions):
 
         return load_noted(name, parameter_overrides(self.set_), mode, self.part())
 
+    def describes_tree(self, name: str) -> bool:
+        """Whether a name or a path describes links and branches, even where these have one tip. Raises InputError."""
+        from robokin.formats.library import described_whole
+        from robokin.model import Tree
+
+        return isinstance(described_whole(name, parameter_overrides(self.set_), None, self.part()), Tree)
+
     def robot(self, name: str) -> tuple[Robot, Units]:
         """The robot that a name or a path describes, and the units to use. Raises InputError, also for no robot."""
         from robokin.cli.arguments import load_robot

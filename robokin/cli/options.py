@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from robokin.cli.completion import robots, words
+from robokin.cli.completion import robots, tips, words
 from robokin.errors import InputError, did_you_mean, or_list, shown
 from robokin.units import METRES, RADIANS, Units
 
@@ -42,7 +42,7 @@ SetOption = Annotated[
 ]
 TipOption = Annotated[
     str | None,
-    option("--tip", "NAME", "The tip or link to which the chain of a tree leads.  [default: the only tip]"),
+    option("--tip", "NAME", "The tip or link to which the chain of a tree leads.  [default: the only tip]", tips),
 ]
 RootOption = Annotated[
     str | None, option("--root", "NAME", "The link from which the chain of a tree leads.  [default: the root]")

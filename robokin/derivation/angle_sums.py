@@ -28,9 +28,14 @@ class Angle:
     parts: tuple[tuple[NamedAngle, int], ...] = ()
 
     def plus(self, other: Angle, sign: int = 1) -> Angle:
-        """This angle and the other one, or less it."""
-        more = tuple((part, sign * own) for part, own in other.parts)
-        return Angle((self.quarters + sign * other.quarters) % 4, self.parts + more)
+        """This angle and the other one, or less it. What the two have with opposite signs is gone."""
+        parts = list(self.parts)
+        for part, own in other.parts:
+            if (part, -sign * own) in parts:
+                parts.remove((part, -sign * own))
+            else:
+                parts.append((part, sign * own))
+        return Angle((self.quarters + sign * other.quarters) % 4, tuple(parts))
 
 
 @dataclass(frozen=True)

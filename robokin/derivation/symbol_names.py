@@ -45,7 +45,7 @@ class Names:
         self.values: dict[str, float] = {}
         self.definitions: dict[str, str] = {}
         self.notes: dict[str, str] = {}
-        self.labels = _labels(robot)
+        self.labels = labels_of(robot)
         self.trigonometry = Trigonometry(any(len(label) > 1 for label in self.labels))
         self.variables = {id(joint): f"q{i}" for i, joint in enumerate(robot.joints, start=1)}
         texts = [text for row in robot.rows for _, text in row.texts] + [text for _, text in robot.texts]
@@ -172,7 +172,7 @@ def in_unit(value: float, unit: float) -> float:
     return short if abs(scaled - short) <= 4.0 * math.ulp(scaled) else scaled
 
 
-def _labels(robot: Robot) -> tuple[str, ...]:
+def labels_of(robot: Robot) -> tuple[str, ...]:
     """The number that each row goes by: a joint its own, a fixed row its row's, with an f where that is taken."""
     joints = _numbers_in_names(robot) or {id(joint): str(i) for i, joint in enumerate(robot.joints, start=1)}
     taken = set(joints.values())

@@ -11,10 +11,11 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.brief import Brief
 from robokin.derivation.angle_sums import Function
+from robokin.derivation.coupled_names import CoupledNames
 from robokin.derivation.symbol_names import Names, quarters_of
 from robokin.derivation.symbol_sums import ONE, ZERO, negative, symbols_of
 from robokin.derivation.symbolic_product import EXACT, Element, Matrix, SymbolicShift, Tilt, Turn, Vector, product, tilt
-from robokin.model import Joint, JointType, Robot, expect_uncoupled
+from robokin.model import CoupledRobot, Joint, JointType, Robot
 from robokin.spatial import z_to
 from robokin.spatial.rotations import cos_sin
 from robokin.units import Units
@@ -44,16 +45,21 @@ def symbolic_kinematics(
 
     `numbers` writes lengths and twists as numbers; `frames` adds the frame after each row, in the world.
     """
-    names = Names(expect_uncoupled(robot), units or robot.units, numbers)
+    names: Names
+    if isinstance(robot, CoupledRobot):
+        names = CoupledNames(robot, units or robot.units, numbers)
+    else:
+        names = Names(robot, units or robot.units, numbers)
     parts: dict[str, list[Element]] = {}
     if not np.array_equal(robot.base, np.eye(4)):
         parts["base"] = _pose(robot.base, _texts(robot.texts, "base "), "0", -1, names)
     labels = names.labels
-    for i, row in enumerate(robot.rows):
-        parts[f"A{labels[i]}"] = _row(robot, row, i, names)
+    for i, row in enumerate(names.robot.rows):
+        # A helical joint is a turn and a slide, in one matrix.
+        parts.setdefault(f"A{labels[i]}", []).extend(_row(robot, row, i, names))
     rows = [name for name in parts if name != "base"]
     if not np.array_equal(robot.tool, np.eye(4)):
-        parts["tool"] = _pose(robot.tool, _texts(robot.texts, "tool "), "t", len(robot.rows), names)
+        parts["tool"] = _pose(robot.tool, _texts(robot.texts, "tool "), "t", len(labels), names)
     matrices = {name: product(elements, names.trigonometry) for name, elements in parts.items()}
     elements = [element for part in parts.values() for element in part]
     T = product(elements, names.trigonometry)

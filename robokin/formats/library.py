@@ -78,12 +78,13 @@ def load_any(
     InputError for an unknown name, with those that are near, and DescriptionError for a wrong description.
     """
     part = part or Part()
-    return part.of(_described(name_or_path, overrides, mode, part))
+    return part.of(described_whole(name_or_path, overrides, mode, part))
 
 
-def _described(
+def described_whole(
     name_or_path: str | Path, overrides: Mapping[str, str] | None, mode: int | None, part: Part
 ) -> Robot | Mechanism | WheeledBase | Tree:
+    """See `load_any`; all that is described, of a tree with one tip the tree."""
     from robokin.formats.read import read_file  # a list of names needs no reader
 
     name = str(name_or_path)

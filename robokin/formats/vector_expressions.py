@@ -66,7 +66,7 @@ def parse_configuration(text: str, robot: Robot | Tree, units: Units, option: st
         return in_units(robot.poses[name], joint_factors(robot, units))
     if name.lower().endswith((".csv", ".jsonl", ".npy")):
         raise InputError(f"{option}: found the name of a file, '{name}', expected values; --input {name} reads a file")
-    if name.replace("-", "_").isidentifier() and name != "pi":
+    if name.replace("-", "_").isidentifier() and not name.startswith("-") and name != "pi":
         known = list(robot.poses)
         listed = f", expected one of its poses: {', '.join(known)}" if known else ", which has none: expected values"
         raise InputError(

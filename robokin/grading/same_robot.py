@@ -13,11 +13,14 @@ as it is, and the joint's own motion if its zero is open. Each axis of b is move
 the set. What is then left is a difference of the robots: it stands wholly at the first joint that differs and is said
 in the terms of a table, the twist and the distance to the axis before, the offset along it and the turn about it. A
 sense that is open is tried both ways; states that differ only by what is free are one.
+
+Of a robot whose joints hang on each other the axes are those of all joints that move, and what each of them takes of
+what is typed must be the same too (`other_couplings`).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, combinations
 
@@ -27,10 +30,11 @@ from robokin.arrays import Array
 from robokin.brief import Brief
 from robokin.grading.chain_freedom import EVERYTHING, NOTHING, Axis, ChainFreedom, Near, across
 from robokin.grading.gaps import Gap, gap_of
+from robokin.grading.other_couplings import OtherCoupling, couplings_between
 from robokin.grading.pose_difference import pose_errors
 from robokin.grading.tolerance import Tolerance
 from robokin.kinematics.forward import joint_frames
-from robokin.model import Robot
+from robokin.model import CoupledRobot, Robot
 from robokin.spatial import invert, quaternion_from_rotation
 
 OPEN = ("base", "tool", "zero", "sign")
@@ -66,9 +70,13 @@ class Skeleton(Brief):
 
 
 def skeleton_of(robot: Robot) -> Skeleton:
-    """The skeleton of a robot."""
+    """The skeleton of a robot; of one whose joints hang on each other, of all that move, each axis once."""
     frames = joint_frames(robot, np.zeros(robot.n))
-    axes = zip(frames[:-1, :3, 2], frames[:-1, :3, 3], robot.revolute.tolist(), strict=True)
+    own = [row for row in robot.rows if row.moves]
+    # A helical joint is a turn and then a slide along the same axis: the frame it starts from is that of its turn.
+    first = np.cumsum([0, *(1 + bool(row.pitch) for row in own)])[:-1].astype(np.intp)
+    turning = [row.type.letter == "R" for row in own]
+    axes = zip(frames[first, :3, 2], frames[first, :3, 3], turning, strict=True)
     return Skeleton(tuple(Axis(u, o, turning) for u, o, turning in axes), frames[-1])
 
 
@@ -203,7 +211,8 @@ class Comparison(Brief):
 
     same: with what was left open; `needs` is the least that must be left open for it to be the same robot, or None if
     it is another one. match: with what `needs` leaves open, or for another robot with everything open. differences:
-    where the robots differ, each from the joint before on; empty for the same robot.
+    where the robots differ, each from the joint before on; empty for the same robot. couplings: the joints that hang
+    on others in another way.
     """
 
     same: bool
@@ -211,14 +220,32 @@ class Comparison(Brief):
     match: Match | None
     differences: tuple[Match, ...]
     score: float
+    couplings: tuple[OtherCoupling, ...] = ()
 
 
 def compare_tables(right: Robot, given: Robot, allowed: Tolerance, free: frozenset[str]) -> Comparison:
     """Whether a given table is the right robot, up to what is left open (of `OPEN`).
 
     The score is the part of the joints, and of the tool unless it is open, that stand right to the one before. A
-    robot with other joints is another one, with score 0 and no match.
+    robot with other joints is another one, with score 0 and no match. Joints that hang on others in another way count
+    as wrong ones.
     """
+    found = _compare_axes(right, given, allowed, free)
+    signs = found.match.state.signs if found.match is not None else ()
+    coupled = isinstance(right, CoupledRobot) or isinstance(given, CoupledRobot)
+    if not coupled or found.match is None:
+        return found
+    signs = (*signs, *(1 for _ in range(len(found.match.right.axes) - len(signs))))
+    other = couplings_between(right, given, signs, free)
+    if not other:
+        return found
+    parts = len(signs) + ("tool" not in free)
+    score = max(0.0, min(found.score, 1.0) - len(other) / parts)
+    return replace(found, same=False, needs=None, score=score, couplings=other)
+
+
+def _compare_axes(right: Robot, given: Robot, allowed: Tolerance, free: frozenset[str]) -> Comparison:
+    """The verdict by the joints' axes alone."""
     a, b = skeleton_of(right), skeleton_of(given)
     if a.types != b.types:
         return Comparison(False, None, None, (), 0.0)

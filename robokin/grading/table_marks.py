@@ -59,21 +59,22 @@ class TableCheck(Subject):
 
     def none(self, task: AnswerTask, status: str, words: Words, **more: Any) -> Item:
         """The mark of what cannot be compared."""
-        return task.item(status, 0.0, words, expected=self.robot.types, more=dict(self.unsaid), **more)
+        return task.item(status, 0.0, words, expected=_moving_types(self.robot), more=dict(self.unsaid), **more)
 
     def item(self, task: AnswerTask, given: Robot) -> Item:
         """The mark of a table that can be read."""
         found = compare_tables(self.robot, given, self.allowed, self.free)
-        mistake = None if found.same else table_mistake(self.robot, given, self.allowed, self.free)
+        told = found.same or bool(found.couplings)
+        mistake = None if told else table_mistake(self.robot, given, self.allowed, self.free)
         if found.match is None:
-            return self.none(task, OTHER_JOINTS, self.other_joints(given), mistake=mistake, got=given.types)
+            return self.none(task, OTHER_JOINTS, self.other_joints(given), mistake=mistake, got=_moving_types(given))
         cells: tuple[Cell, ...] = ()
-        if not found.same and mistake is None:
+        if not told and mistake is None:
             cells = wrong_cells(self.robot, given, self.allowed, self.free)
         differences = [difference_of(one, self.allowed) for one in found.differences]
         return task.item(
             PASS if found.same else DIFFERENT, found.score, self.words(found, differences, cells), mistake,
-            expected=self.robot.types, got=given.types, more=self.more(found, differences, cells),
+            expected=_moving_types(self.robot), got=_moving_types(given), more=self.more(found, differences, cells),
         )  # fmt: skip
 
     def more(self, found: Comparison, differences: list[Difference], cells: tuple[Cell, ...]) -> dict[str, Any]:
@@ -82,7 +83,7 @@ class TableCheck(Subject):
         if found.needs is not None and found.match is not None:
             more |= {
                 "needs": list(found.needs),
-                "zeros": self.joints(self.zeros(found)),
+                "zeros": self.shifts(self.zeros(found)),
                 "signs": list(found.match.state.signs),
             }
         more["differences"] = [{"joint": one.joint, "what": one.what, **self.values(one)} for one in differences]
@@ -94,29 +95,38 @@ class TableCheck(Subject):
         expected = None if one.expected is None else self.value(one.expected, one.angle)
         return {"found": self.value(one.found, one.angle), "expected": expected}
 
+    def shifts(self, zeros: Array) -> list[float]:
+        """Shifts of joints (n,) [rad | m] in the units."""
+        turning = [letter == "R" for letter in _moving_types(self.robot)]
+        return [self.value(float(shift), turns) for shift, turns in zip(zeros, turning, strict=True)]
+
     def zeros(self, found: Comparison) -> Array:
         """(n,) the shifts c of q' = s (q + c) [rad | m], without the dust that the comparison leaves."""
         assert found.match is not None
         zeros = found.match.zeros
-        small = np.where(self.robot.revolute, self.allowed.angle, self.allowed.position)
+        turning = np.array([letter == "R" for letter in _moving_types(self.robot)], dtype=bool)
+        small = np.where(turning, self.allowed.angle, self.allowed.position)
         return np.where(np.abs(zeros) <= small, 0.0, zeros)
 
     # Words ------------------------------------------------------------------------------------------------
 
     def other_joints(self, given: Robot) -> Words:
         """Where the joints' types differ."""
-        if given.n != self.robot.n:
-            answer = f"{given.n} joints ({given.types}), expected {self.robot.n} ({self.robot.types})"
-            return Words("the number of joints", f"{given.n} joints are not the right number", answer)
-        i = next(i for i, (a, b) in enumerate(zip(given.types, self.robot.types, strict=True), start=1) if a != b)
+        got, wanted = _moving_types(given), _moving_types(self.robot)
+        if len(got) != len(wanted):
+            answer = f"{len(got)} joints ({got}), expected {len(wanted)} ({wanted})"
+            return Words("the number of joints", f"{len(got)} joints are not the right number", answer)
+        i = next(i for i, (a, b) in enumerate(zip(got, wanted, strict=True), start=1) if a != b)
         names = {"R": "revolute", "P": "prismatic"}
-        answer = f"joint {i} is {names[given.types[i - 1]]}, expected {names[self.robot.types[i - 1]]}"
+        answer = f"joint {i} is {names[got[i - 1]]}, expected {names[wanted[i - 1]]}"
         return Words(f"the type of joint {i}", f"the type of joint {i}", answer)
 
     def words(self, found: Comparison, differences: list[Difference], cells: tuple[Cell, ...]) -> Words:
         """What is wrong, in a sentence."""
         if found.same:
             return Words()
+        if found.couplings:
+            return self.hung(found)
         named = joined([self.cell(one) for one in cells])
         # One wrong cell says more than what would have to be left open for it; of a wrong offset both are said.
         offset = found.needs == ("zero",) and any(one.column == "offset" for one in cells)
@@ -131,6 +141,37 @@ class TableCheck(Subject):
         same = f"the same arm, but {' and '.join(said)}"
         pass_with = f"; --up-to {open_all} would let it pass"
         return first.mapped(lambda text: f"{same}{pass_with} ({text})")
+
+    def hung(self, found: Comparison) -> Words:
+        """What joints hang on, where it is not what it should be."""
+        one, more = found.couplings[0], len(found.couplings) + len(found.differences) - 1
+        start = f"joint {one.joint}: what it hangs on"
+        if one.pitches is not None:
+            start = f"joint {one.joint}: its pitch"
+            own, right = (show(self.value(2.0 * np.pi * pitch, False)) for pitch in one.pitches)
+            answer = f"{start}: {own} {self.units.length} a turn, expected {right}"
+        else:
+            own, right = (self.shares(one.joint, ratios) for ratios in (one.found, one.expected))
+            answer = f"{start}: {own}, expected {right}"
+        words = Words(start, f"{start} is another", answer)
+        return words.mapped(lambda text: f"{text}; and {more} more" if more > 0 else text)
+
+    def shares(self, joint: int, ratios: tuple[tuple[int, float], ...]) -> str:
+        """What a joint (from 1) takes of others, as `itself - 0.5 of joint 2`, in the units."""
+        moving = [row for row in self.robot.rows if row.moves]
+
+        def unit(number: int) -> float:
+            turns = number > len(moving) or moving[number - 1].type.letter == "R"
+            return self.units.radians if turns else self.units.metres
+
+        text = ""
+        for other, ratio in ratios:
+            number = ratio * unit(other) / unit(joint)
+            name = f"joint {other}" if other <= len(moving) else "a joint beside the chain"
+            name = "itself" if other == joint else name
+            times = name if number == 1.0 or (text and number == -1.0) else f"{show(abs(number))} of {name}"
+            text += f" {'-' if number < 0.0 else '+'} {times}" if text else f"{'-' if number < 0.0 else ''}{times}"
+        return "nothing" if text in ("itself", "") else text
 
     def cell(self, one: Cell) -> Words:
         """A wrong cell in a sentence."""
@@ -166,6 +207,11 @@ class TableCheck(Subject):
         expected = self.value(one.expected, one.angle)
         off = f"{start}: off by {show(abs(value - expected))} {unit}"
         return Words(start, off, f"{start}: {show(value)} {unit}, expected {show(expected)} {unit}")
+
+
+def _moving_types(robot: Robot) -> str:
+    """The types of the joints that move, those that hang on others too."""
+    return "".join(row.type.letter for row in robot.rows if row.moves)
 
 
 def _numbers(joints: list[int]) -> str:

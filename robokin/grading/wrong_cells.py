@@ -11,7 +11,7 @@ from robokin.arrays import Array
 from robokin.grading.same_robot import match, skeleton_of
 from robokin.grading.tolerance import Tolerance
 from robokin.kinematics.forward import forward_kinematics, row_frames
-from robokin.model import Joint, Robot
+from robokin.model import CoupledRobot, Joint, Robot
 from robokin.spatial import invert
 
 COLUMNS = ("theta", "d", "a", "alpha", "offset")
@@ -46,7 +46,8 @@ def wrong_cells(right: Robot, given: Robot, allowed: Tolerance, free: frozenset[
             return (one,)
     if cells and len(cells) <= MOST and _same(right, _put_right(given, cells), allowed, free):
         return cells
-    return () if free else _of_one_row(right, given, allowed)
+    coupled = isinstance(right, CoupledRobot) or isinstance(given, CoupledRobot)
+    return () if free or coupled else _of_one_row(right, given, allowed)
 
 
 def _beside(right: Robot, given: Robot, allowed: Tolerance) -> tuple[Cell, ...]:

@@ -8,14 +8,16 @@ from typing import Literal, Protocol
 import numpy as np
 
 from robokin.arrays import Array, Index
-from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
+from robokin.inverse.coupled_search import coupled_tips
+from robokin.inverse.numeric.driven_descent import driven_ends
+from robokin.inverse.numeric.driven_tips import errors_and_slopes
 from robokin.inverse.numeric.least_squares import descend
 from robokin.inverse.self_motion.nearest_member import nearest_on
 from robokin.inverse.self_motion.solution_sets import families
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import CLOSES
-from robokin.kernel.damped_newton import brought_down, limited
+from robokin.kernel.damped_newton import brought_down, limited, singular_step
 from robokin.kernel.frames import pose
 from robokin.kernel.residual import error_and_jacobian
 from robokin.model import CoupledRobot, Robot
@@ -42,6 +44,12 @@ LONGEST = 0.3
 
 DAMPING = 1e-3
 """Damping of these steps as a part of the squared error."""
+
+AROUND = (1e-4, 1e-3, 1e-2, 0.05, 0.3)
+"""How far around a configuration [rad | size] descents start where steps from it do not arrive."""
+
+AROUND_EACH = 4
+"""How many of them so far: of two ways out of a stretched arm one of them finds each."""
 
 BLOCK = 1024
 """Poses that are solved together."""
@@ -223,12 +231,66 @@ class CoupledFollower:
         return None if v is None else self.drive.variables_for(v)
 
 
+class DrivenFollower(Follower):
+    """The same for a robot whose joints follow others: steps of least motion of what is typed, no list of solutions.
+
+    Where they do not arrive, as from a stretched arm, all of whose steps lead outwards, descents from around there do.
+    """
+
+    def __init__(
+        self, robot: CoupledRobot, at: Callable[[Array], Array], task: Literal["pose", "position"], s: Array
+    ) -> None:
+        self.robot, self.at, self.task, self.s = robot, at, task, s
+        self.free, self.bounded = coupled_tips(robot, task, False), coupled_tips(robot, task, True)
+        self.scale = self.free.scale
+        self.numeric = True
+        self.poses = at(s)
+        self.ahead = np.zeros(robot.n)
+        away = np.random.default_rng(0).uniform(-1.0, 1.0, (AROUND_EACH, robot.n))
+        self._around = np.concatenate([np.zeros((1, robot.n)), *(far * away for far in AROUND)])
+
+    def track(self, q: Array, T: Array, ahead: Array) -> Array | None:
+        """See `Follower.track`."""
+        found = self._steps(q + ahead, T)
+        if found is not None and self.move(q, found) > NEAR:
+            found = None
+        inside = bool(self.robot.within_limits(q))
+        if found is not None and (self.robot.within_limits(found) or not inside):
+            return found
+        # Either it is singular, or a joint meets its limit and the others may do without it.
+        around = q + self.scale * self._around
+        tips = self.bounded if inside else self.free
+        u = np.clip(around, tips.limits[:, 0], tips.limits[:, 1])
+        ends = driven_ends(tips, np.repeat(T[None, None], len(u), axis=0), u, STEPS)
+        moves = np.where(ends.reached, np.max(np.abs(ends.u - q) / self.scale, axis=1), np.inf)
+        best = int(np.argmin(moves))
+        if moves[best] <= NEAR or (found is None and np.isfinite(moves[best])):
+            return np.asarray(ends.u[best])
+        return found
+
+    def _steps(self, u: Array, T: Array) -> Array | None:
+        """The variables (n,) that steps of least motion lead to from u (n,); None where they do not arrive."""
+        endless = np.full(len(u), np.inf)
+        target = T[None, None]
+
+        def errors(_: Index, x: Array) -> tuple[Array, Array]:
+            return errors_and_slopes(self.free, target, x * self.scale)
+
+        def step(_: Index, x: Array, e: Array, J: Array) -> Array:
+            damping = DAMPING * (np.max(e * e, axis=1) + 1e-9)
+            # Of a great ratio next to small ones: by singular values, since what is squared is lost in rounding.
+            return limited(singular_step(J, e, damping), LONGEST)
+
+        ends, e = brought_down(
+            errors, step, (u / self.scale)[None], -endless, endless, steps=STEPS, arrived=(0.1 * CLOSES) ** 2
+        )
+        return np.asarray(ends[0] * self.scale) if np.max(np.abs(e)) <= 0.1 * CLOSES else None
+
+
 def follower_of(robot: Robot, at: Callable[[Array], Array], task: Literal["pose", "position"], s: Array) -> Follows:
-    """What follows poses at(s), looked up at places s (k,). Raises InputError where joints follow others."""
+    """What follows poses at(s), looked up at places s (k,)."""
     if not isinstance(robot, CoupledRobot):
         return Follower(robot, at, task, s)
     if not robot.drive.invertible:
-        raise InputError(
-            f"{robot.coupled}, expected no line: a robot whose joints move one by one, or add to each other"
-        )
+        return DrivenFollower(robot, at, task, s)
     return CoupledFollower(robot, Follower(robot.free_motion, at, task, s))

@@ -21,11 +21,12 @@ import numpy as np
 from robokin.arrays import Array, Index
 from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
+from robokin.inverse.held_drive import drive_left
 from robokin.inverse.solution_names import branch_names
 from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution
 from robokin.kernel.chain import row_standing
 from robokin.kernel.facts import fact
-from robokin.model import Robot
+from robokin.model import CoupledRobot, Robot
 from robokin.model.robot import LIMIT_TOLERANCE
 
 KEPT = 16
@@ -87,7 +88,7 @@ def _held_arms(robot: Robot) -> OrderedDict[tuple[tuple[int, float], ...], HeldA
 
 
 def check_held_limits(robot: Robot, arm: HeldArm) -> None:
-    """Raise InputError where a held value is outside the joint's limits."""
+    """Raise InputError where a held value is outside the joint's limits, or leaves no value to one that hangs on it."""
     for joint, value in zip(arm.joints.tolist(), arm.values.tolist(), strict=True):
         if not held_inside(robot, joint, value):
             low, high = robot.limits[joint].tolist()
@@ -96,6 +97,12 @@ def check_held_limits(robot: Robot, arm: HeldArm) -> None:
                 f"q{joint + 1} is held at {value:.6g} {unit}, outside its limits; "
                 f"expected {low:.6g} to {high:.6g} {unit}, or limits=False"
             )
+    if not arm.inside:
+        names = " and ".join(f"q{joint + 1}" for joint in arm.joints.tolist())
+        raise InputError(
+            f"with {names} held so, joints that hang on {'them' if len(arm.joints) > 1 else 'it'} have no value within "
+            "their limits; expected other values, or no limits"
+        )
 
 
 def held_inside(robot: Robot, joint: int, value: float) -> bool:
@@ -110,7 +117,9 @@ def with_held_joints(robot: Robot, arm: HeldArm, batch: BatchResult) -> BatchRes
     The solutions are some of all that the robot has at the pose. Where these are finitely many, the robot's names tell
     them apart; a redundant robot's do not, and the postures are named as the part's.
     """
-    renamed = analysis_of(robot).redundancy == 0
+    motion = robot.free_motion if isinstance(robot, CoupledRobot) else robot
+    renamed = not (isinstance(robot, CoupledRobot) and not robot.drive.invertible)
+    renamed = renamed and analysis_of(motion).redundancy == 0
     listed = np.arange(batch.q.shape[1]) < batch.count[:, None]
     q = arm.whole(batch.q)
 
@@ -118,7 +127,7 @@ def with_held_joints(robot: Robot, arm: HeldArm, batch: BatchResult) -> BatchRes
         return _whole_result(arm, batch[i], robot if renamed else None)
 
     def branches() -> list[str]:
-        return branch_names(robot, q[listed]) if renamed else batch.branches()
+        return _names(robot, q[listed]) if renamed else batch.branches()
 
     return replace(batch, q=q, within_limits=batch.within_limits & arm.inside, single=single, branches=branches)
 
@@ -148,6 +157,13 @@ def _checked(robot: Robot, hold: Mapping[int, float]) -> dict[int, float]:
 
 
 def _held(robot: Robot, hold: dict[int, float]) -> HeldArm:
+    name = f"{robot.name} with {', '.join(f'q{i + 1}' for i in hold)} held"
+    joints = np.array(list(hold), dtype=np.intp)
+    free = np.setdiff1d(np.arange(robot.n), joints).astype(np.intp)
+    inside = all(held_inside(robot, joint, value) for joint, value in hold.items())
+    if isinstance(robot, CoupledRobot):
+        part, left = drive_left(robot, hold, name)
+        return HeldArm(robot.n, joints, np.array(list(hold.values())), inside and left, part, free)
     rows, number = [], 0
     for row in robot.rows:
         if row.moves:
@@ -155,11 +171,7 @@ def _held(robot: Robot, hold: dict[int, float]) -> HeldArm:
             number += 1
         else:
             rows.append(row)
-    names = ", ".join(f"q{i + 1}" for i in hold)
-    part = replace(robot, name=f"{robot.name} with {names} held", rows=tuple(rows), poses={}, texts=())
-    joints = np.array(list(hold), dtype=np.intp)
-    free = np.setdiff1d(np.arange(robot.n), joints).astype(np.intp)
-    inside = all(held_inside(robot, joint, value) for joint, value in hold.items())
+    part = replace(robot, name=name, rows=tuple(rows), poses={}, texts=())
     return HeldArm(robot.n, joints, np.array(list(hold.values())), inside, part, free)
 
 
@@ -168,12 +180,19 @@ def _whole_result(arm: HeldArm, result: Result, named: Robot | None) -> Result:
     shown = [*result.solutions, *([result.nearest] if result.nearest is not None else [])]
     names = [solution.branch for solution in shown]
     if named is not None and shown:
-        names = branch_names(named, arm.whole(np.array([solution.q for solution in shown])))
+        names = _names(named, arm.whole(np.array([solution.q for solution in shown])))
     whole = [_whole_solution(arm, solution, name) for solution, name in zip(shown, names, strict=True)]
     solutions = tuple(whole[: len(result.solutions)])
     nearest = whole[-1] if result.nearest is not None else None
     families = tuple(_whole_family(arm, family) for family in result.families)
     return replace(result, solutions=solutions, nearest=nearest, families=families)
+
+
+def _names(robot: Robot, q: Array) -> list[str]:
+    """The names of configurations q (s, n) [rad | m], which are those of what moves where joints hang on each other."""
+    if isinstance(robot, CoupledRobot):
+        return branch_names(robot.free_motion, robot.drive.motions(q))
+    return branch_names(robot, q)
 
 
 def _whole_solution(arm: HeldArm, solution: Solution, name: str) -> Solution:

@@ -98,9 +98,7 @@ def solve_many(
     cores = None if cores is None else expect_whole(cores, "cores", 1, MOST_CORES)
     if hold is not None:
         expect_kind(hold, Mapping, "hold", "a mapping of joints (from 0) to values, such as {2: 0.35}")
-    if isinstance(robot, CoupledRobot):
-        if hold:
-            raise InputError(f"hold: {robot.coupled}, expected a robot whose joints move one by one")
+    if isinstance(robot, CoupledRobot) and not hold:
 
         def free(arm: Robot, T: Array, bounded: bool, listed: int | None) -> BatchResult:
             wish = None if near is None else robot.drive.motions(near)

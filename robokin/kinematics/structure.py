@@ -133,6 +133,8 @@ def dimension_of(robot: Robot) -> int:
     J[:3] /= size
     sliding = ~robot.revolute
     J[:, sliding] *= size
+    if isinstance(robot, CoupledRobot):  # a ratio of a million is no reason to take the others for nothing
+        J /= np.maximum(np.linalg.norm(J, axis=0), np.finfo(float).tiny)
     singular = np.linalg.svd(J, compute_uv=False)
     return int(np.sum(singular > SAME * singular[0]))
 

@@ -27,7 +27,7 @@ from robokin.kernel.joint_axes import nearest_point
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
 from robokin.kinematics.structure import arm_size, structure_of
-from robokin.model import Robot, expect_robot
+from robokin.model import CoupledRobot, Robot, expect_robot
 
 TaskName = Literal["pose", "position", "orientation"]
 
@@ -120,9 +120,11 @@ def _task(robot: Robot, name: TaskName | None) -> MotionTask:
 
     if name is None:
         name = "pose"
-        if robot.n <= 3:
+        # Variables beside a chain may be more than its joints: these say what the arm does.
+        joints = min(robot.n, len(robot.drive.offsets)) if isinstance(robot, CoupledRobot) else robot.n
+        if joints <= 3:
             for part in ("position", "orientation"):
-                if name == "pose" and rank(ROWS[part]) == robot.n:
+                if name == "pose" and rank(ROWS[part]) == joints:
                     name = part
     counted = np.zeros_like(J)
     counted[:, ROWS[name]] = J[:, ROWS[name]]

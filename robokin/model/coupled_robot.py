@@ -121,9 +121,22 @@ class CoupledRobot(Robot):
         """Whatever its rows are, the drive says how they move."""
 
     @cached_property
+    def free_graph(self) -> Graph:
+        """The table as a graph without its couplings."""
+        plain: Graph = Robot.graph.func(self)  # type: ignore[attr-defined]
+        return plain
+
+    @cached_property
+    def row_values(self) -> tuple[Array, Array]:
+        """S (k, n) and o (k,) of the values S u + o of the rows that move; of a helical one that of its turn."""
+        moving = [row for row in self.rows if row.moves]
+        first = np.cumsum([0, *(1 + bool(row.pitch) for row in moving)])[:-1].astype(np.intp)
+        return self.drive.S[first], self.drive.offsets[first]
+
+    @cached_property
     def graph(self) -> Graph:
         """The table as a graph with its couplings. Raises InputError where what moves a joint is not in the chain."""
-        plain = Robot.graph.func(self)  # type: ignore[attr-defined]
+        plain = self.free_graph
         names = {joint.name for joint in plain.joints if joint.moves}
         for coupling in self.drive.couplings:
             for name in (coupling.joint, *(other for other, _ in coupling.ratios)):

@@ -29,6 +29,9 @@ from robokin.model.topology import Topology, topology_of
 
 NO_LIMITS = (-np.inf, np.inf)
 
+MOST_LISTED = 12
+"""Links and tips that a message lists."""
+
 GREATEST_RATIO = 1e9
 """What couplings may multiply a value by, and add to it [rad | m]: gears are far below, and products of a few stay
 numbers."""
@@ -229,9 +232,13 @@ class Graph(Brief):
         """
         tips = {name: (number, np.eye(4)) for number, name in enumerate(self.links)}
         tips |= {one.name: (one.link, one.tool) for one in self.tips}
-        for name, known in ((root, self.links), (tip, tips)):
+        # The tips come first: they are what is asked for most, and a message has no room for all links.
+        named = [*(one.name for one in self.tips), *(name for name in self.links)]
+        for name, known in ((root, [*self.links]), (tip, [*dict.fromkeys(named)])):
             if name not in known:
-                hint = did_you_mean(name, known) or f", expected one of {', '.join([*known][:12])}"
+                more = ", …" if len(known) > MOST_LISTED else ""
+                listed = ", ".join(shown(one) for one in known[:MOST_LISTED])
+                hint = did_you_mean(name, known) or f", expected one of {listed}{more}"
                 raise InputError(f"found the unknown link '{shown(name)}'{hint}")
         first, (last, tool) = self.links.index(root), tips[tip]
         numbers: list[int] = []

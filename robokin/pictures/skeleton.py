@@ -14,7 +14,7 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.errors import InputError, shown
 from robokin.kernel.facts import fact
-from robokin.model import Robot, Tree
+from robokin.model import CoupledRobot, Robot, Tree
 from robokin.model.graph import Graph, GraphJoint
 from robokin.spatial import exact
 
@@ -70,6 +70,8 @@ def branches_of(robot: Robot | Tree) -> list[tuple[str, list[int]]]:
     A branch is called by what its joints' names have in common, `index` of index.mcp and index.pip, else by its tip,
     or by the link at its end.
     """
+    if isinstance(robot, CoupledRobot):
+        return [("", list(range(robot.n)))]
     skeleton, graph = skeleton_of(robot), robot.graph
     runs, children = skeleton.runs(), skeleton.children
     where = {body.number: run for body, run in zip(skeleton.bodies, runs[1:], strict=True)}
@@ -91,6 +93,10 @@ def branches_of(robot: Robot | Tree) -> list[tuple[str, list[int]]]:
 
 def leads_of(robot: Robot | Tree, i: int) -> list[str]:
     """The names of the joints that move with variable i beside its own joint."""
+    if isinstance(robot, CoupledRobot):
+        moving = [row.name for row in robot.rows if row.moves]
+        led = np.flatnonzero(robot.row_values[0][:, i])
+        return [moving[k] for k in led if moving[k] != robot.joints[i].name]
     S = robot.graph.value_map[0]
     own = robot.graph.variables[i]
     return [
@@ -167,10 +173,11 @@ def skeleton_of(robot: Robot | Tree) -> ArmSkeleton:
 
     Raises InputError for a joint whose motion is not known.
     """
-    graph = robot.graph
+    # What moves the joints of a chain may be joints beside it: its drive says how.
+    graph = robot.free_graph if isinstance(robot, CoupledRobot) else robot.graph
+    S, o = robot.row_values if isinstance(robot, CoupledRobot) else graph.value_map
     walk = _Walk(graph, not isinstance(robot, Robot) or robot.convention == "standard")
     walk.all()
-    S, o = graph.value_map
     moving = [graph.moving.index(body.number) for body in walk.bodies]
     zeros = np.array([body.joint.zero for body in walk.bodies])
     named = {tip.name for tip in walk.tips}

@@ -105,7 +105,11 @@ def robot_record(robot: Robot, units: Units) -> dict[str, Any]:
         )
         for i, row in enumerate(robot.rows, start=1)
     ]  # fmt: skip
-    coupled = {"couplings": _couplings(robot, units)} if isinstance(robot, CoupledRobot) else {}
+    coupled: dict[str, Any] = {}
+    if isinstance(robot, CoupledRobot):
+        coupled = {"couplings": _couplings(robot, units)}
+        beside = [joint for joint in robot.joints if joint.name not in {row.name for row in robot.rows}]
+        coupled |= {"beside": [_beside(joint, own[joint.name], units) for joint in beside]} if beside else {}
     factors = joint_factors(robot, units)
     return {
         **envelope("robot", robot.id, units),
@@ -149,6 +153,14 @@ def _couplings(robot: CoupledRobot, units: Units) -> list[dict[str, Any]]:
         offset = float(in_units(np.array(coupling.offset), mine))
         found.append({"joint": coupling.joint, "own": coupling.own, "ratios": ratios, "offset": offset})
     return found
+
+
+def _beside(joint: Joint, variable: str, units: Units) -> dict[str, Any]:
+    """A joint that is not in the chain and moves joints of it, in the given units."""
+    factor = units.radians if joint.type == "revolute" else units.metres
+    low, high = joint.limits
+    limits = None if np.isinf(low) else [float(in_units(np.array(end), factor)) for end in (low, high)]
+    return {"variable": variable, "joint": joint.name, "type": str(joint.type), "limits": limits}
 
 
 def _row_record(i: int, row: Joint, variable: str | None, convention: str, units: Units) -> dict[str, Any]:

@@ -174,7 +174,22 @@ def _robot(about: dict[str, Schema], made: bool = False) -> Schema:
             "poses": mapping(numbers("Joint values [joint]."), "Named poses."),
         },
         ({"made_from": source} if made else {})
-        | {"couplings": items(_coupling(), "Of a robot whose joints hang on each other: which on which.")},
+        | {
+            "couplings": items(_coupling(), "Of a robot whose joints hang on each other: which on which."),
+            "beside": items(_beside(), "Joints that are not in the chain and move joints of it."),
+        },
+    )
+
+
+def _beside() -> Schema:
+    return record(
+        "A joint beside the chain.",
+        {
+            "variable": text("Its variable, such as q3."),
+            "joint": text("Its name."),
+            "type": word("How it moves.", "revolute", "prismatic"),
+            "limits": maybe(numbers("Its least and its greatest value [joint]."), "where it has none"),
+        },
     )
 
 

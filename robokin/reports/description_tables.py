@@ -81,6 +81,9 @@ def robot_table(record: dict[str, Any]) -> bytes:
 def _coupled_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
     """What joints hang on, and how those move that are not as what is typed."""
     entries = [("coupled", coupling_in_short(coupling)) for coupling in record.get("couplings", ())]
+    for one in record.get("beside", ()):
+        within = "" if one["limits"] is None else f", {show_range(*one['limits'])}"
+        entries.append(("beside", f"{one['variable']} is {one['joint']}{within}"))
     for row in record["rows"]:
         if "motion_limits" in row:
             entries.append(("moves", f"{row['name']} itself {show_range(*row['motion_limits'])}"))

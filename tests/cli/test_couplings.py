@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import json
+
+import numpy as np
 import pytest
 from cli.conftest import refused
+from cli.test_documents import known_fault
+
+from robokin.records.schemas import document_schema
 
 PENDANT = """robokin: 1
 name: Pendant arm
@@ -114,13 +120,97 @@ def test_limits_that_are_shown_are_those_that_are_left(call, write):
     assert "spindle 20 mm a turn" in call("show", write(SCREW)).text
 
 
+def test_what_is_typed_can_be_held(call, write):
+    path = write(PENDANT)
+    pose = call("fk", path, "--q", "bent", "--json").json["pose"]
+    position, rpy = (",".join(map(repr, pose[key])) for key in ("position", "rpy"))
+    held = call("ik", path, f"--xyz={position}", f"--rpy={rpy}", "--hold", "J2=20", "--json").json
+    assert held["complete"] and all(one["q"][1] == 20.0 for one in held["solutions"])
+    assert known_fault(document_schema("ik"), held) is None
+    assert {one["branch"] for one in held["solutions"]} <= {
+        one["branch"] for one in call("ik", path, f"--xyz={position}", f"--rpy={rpy}", "--json").json["solutions"]
+    }
+    assert call("ik", path, f"--xyz={position}", f"--rpy={rpy}", "--hold", "J3=30", "--json").json["complete"] is False
+    refused(
+        call("ik", path, f"--xyz={position}", "--hold", "J2=140", "--hold", "J3=-120"),
+        "with q2 and q3 held so, joints that hang on them have no value within their limits",
+    )
+
+
+def test_a_line_of_a_finger(call, write):
+    path = write(FINGER)
+    words = ("path", path, "--from", "0,0,0", "--to", "5,20,30", "--line", "--steps", "8")
+    answer = call(*words, "--json")
+    assert answer.status == 0 and answer.json["complete"]
+    assert known_fault(document_schema("path"), answer.json) is None
+    assert answer.json["path"][-1]["q"] == pytest.approx([5, 20, 30], abs=1e-5)
+    positions = np.array([row["position"] for row in answer.json["path"]])
+    along = positions - positions[0]
+    assert np.linalg.norm(np.cross(along, along[-1]), axis=1) == pytest.approx(np.zeros(9), abs=1e-6)
+    over = call("path", path, "--from", "0,0,0", "--to", "5,20,95", "--line", "--steps", "8", "--json")
+    assert (over.status, over.json["events"][-1]["kind"]) == (3, "limit")
+
+
+def test_matrices_in_symbols_of_what_is_typed(call, write):
+    text = call("fk", write(FINGER), "--symbolic").text
+    assert "theta4 = 0.6666666666666666*q3\n" in text
+    assert "c1*(a2*c2 + a3*c23 + a4*c234)" in text
+    document = call("fk", write(PENDANT), "--symbolic", "--json").json
+    assert known_fault(document_schema("fk"), document) is None
+    assert document["T"][2][3] == "a2*c2 + c3*(a3 - c4*s5*d6) - s3*(c5*d6 + d4) + d1"  # θ2 + θ3 = q3, as typed
+    assert "d3 = 0.05555555555555555*q3" in call("fk", write(SCREW), "--symbolic", "--python").text
+
+
+def test_a_leader_beside_the_chain_moves_what_is_drawn(call, write):
+    arm = """robokin: 1
+name: Two
+units: {length: mm, angle: deg}
+branches:
+  left: {joints: [{name: a, type: R, d: 0, a: 50, alpha: 0, limits: [-10, 90]}]}
+  right: {joints: [{name: b, type: R, d: 0, a: 40, alpha: 0}, {name: c, type: R, d: 0, a: 30, alpha: 0}]}
+couplings: [{joint: right.c, follows: left.a, ratio: 2}]
+"""
+    path = write(arm)
+    assert "\ntool  30  40  0  mm" in call("plot", path, "--tip", "right", "--q", "90,-45").text
+    page = json.loads(call("plot", path, "--tip", "right", "--json").text)
+    assert [len(arm["joints"]) for arm in page["arms"]] == [2]
+    assert "beside     q2 is left.a, -10 .. 90\n" in call("show", path, "--tip", "right").text
+    record = call("show", path, "--tip", "right", "--json").json
+    assert record["beside"] == [{"variable": "q2", "joint": "left.a", "type": "revolute", "limits": [-10.0, 90.0]}]
+    assert known_fault(document_schema("show"), record) is None
+
+
+def test_a_single_joint_takes_a_negative_value(call, write):
+    path = write("robokin: 1\nname: One\nunits: {length: mm, angle: deg}\njoints: [{type: R, a: 100}]\n")
+    assert call("fk", path, "--q", "-90", "--json").json["pose"]["position"] == pytest.approx([0, -100, 0])
+    refused(call("fk", path, "--q", "-home"), "unknown name 'home'")
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("ratio: 2/3", "ratio: 0.5"), "joint 4: what it hangs on: 0.5 of joint 3, expected 0.666667 of joint 3"),
+        (("follows: pip", "adds: pip"), "joint 4: what it hangs on: 0.666667 of joint 3 + itself, expected"),
+        (("a: 27", "a: 28"), "row 3: a 28 mm, expected 27 mm"),
+    ],
+)
+def test_tables_are_marked_by_what_hangs_on_what_too(call, write, tmp_path, change, said):
+    right = write(FINGER)
+    given = tmp_path / "given.yaml"
+    assert change[0] in FINGER
+    given.write_text(FINGER.replace(*change))
+    assert call("check", "dh", right, "--against", right).status == 0
+    answer = call("check", "dh", given, "--against", right, "--json")
+    (item,) = answer.json["items"]
+    assert (answer.status, item["status"]) == (3, "different")
+    assert said in item["detail"]
+
+
 @pytest.mark.parametrize(
     ("command", "said"),
     [
         (("workspace",), "joint dip hangs on pip"),
-        (("fk", "--symbolic"), "joint dip hangs on pip"),
-        (("path", "--from", "0,0,10", "--to", "0,10,20", "--line"), "joint dip hangs on pip"),
-        (("ik", "--xyz", "60,0,-20", "--hold", "q1=3"), "joint dip hangs on pip"),
+        (("ik", "--xyz", "60,0,-20", "--hold", "dip=3"), "joint 'dip' follows others, expected q1 to q3"),
         (("ik", "--xyz", "60,0,-20", "--explain"), "joint dip hangs on pip"),
     ],
 )

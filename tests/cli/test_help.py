@@ -101,6 +101,10 @@ def test_a_shell_completes_what_options_take(tmp_path):
     assert completed("robokin fk puma560 --q h") == ["home"]
     assert completed("robokin path puma560 --from h") == ["home"]
     assert completed("robokin fk no-such-robot --q h") == []
+    assert completed("robokin ik human-hand --target i") == ["index="]
+    assert completed("robokin ik human-hand --tip ") == ["thumb", "index", "middle", "ring", "little"]
+    assert completed("robokin fk human-hand --q pi") == ["pinch"]
+    assert completed("robokin ik puma560 --tip ") == completed("robokin ik no-such.yaml --target ") == []
     (tmp_path / "my arm.yaml").write_text("robokin: 1\nname: A\njoints:\n  - {type: R, a: 1}\nposes: {up: [90]}\n")
     (tmp_path / "mine").mkdir()
     (tmp_path / "m.txt").write_text("")

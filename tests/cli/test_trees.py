@@ -157,3 +157,17 @@ def test_joint_values_of_a_file_may_be_called_by_the_joints_names(call, fingers)
     by_name = call("fk", fingers, "--q", "-", "-f", "jsonl", stdin=rows.encode()).jsonl
     by_order = call("fk", fingers, "--q", "1,2,3,4", "-f", "jsonl").jsonl
     assert by_name[0]["tips"] == by_order[0]["tips"]
+
+
+def test_a_tree_with_one_tip_is_shown_as_a_table_and_rows_of_frames_as_they_are(call, tmp_path):
+    tree = tmp_path / "tree.yaml"
+    tree.write_text(
+        "robokin: 1\nname: One tip\nunits: {length: mm, angle: deg}\nbranches:\n"
+        "  palm: {joints: [{name: wrist, type: R, alpha: 90}]}\n"
+        "  index: {on: palm, base: 'Trans(90, 20, 0)', joints: [{name: mcp, type: R, a: 45}]}\n"
+    )
+    record = call("show", tree, "--json").json
+    assert (record["convention"], record["made_from"]) == ("standard", "frames")
+    assert [(row["a"], row["d"], row["alpha"]) for row in record["rows"]] == [(90.0, 20.0, 90.0), (45.0, 0.0, 0.0)]
+    assert record == call("show", tree, "--tip", "index", "--json").json
+    assert call("show", "scara-frames", "--json").json["convention"] == "frames"

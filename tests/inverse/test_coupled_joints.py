@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 import robokin
+from robokin.inverse.coupled_joints import about_inverse
+from robokin.kinematics.velocity import motion_task
 from robokin.model import CoupledRobot, JointType
-from robokin.model.coupled_robot import driven
+from robokin.model.coupled_robot import drive_of, driven
 from robokin.model.graph import Coupling
 from robokin.model.robot import Joint, Robot
 
@@ -213,12 +215,8 @@ def test_turns_that_no_list_holds_are_refused():
 
 
 def test_what_has_no_answer_yet_is_refused():
-    arm = finger()
-    T = robokin.forward_kinematics(arm, np.zeros(3))
-    with pytest.raises(robokin.InputError, match="hold: joint dip hangs on pip"):
-        robokin.solve_ik(arm, T, hold={0: 0.0})
     with pytest.raises(robokin.InputError, match="joint dip hangs on pip"):
-        robokin.analyse_workspace(arm)
+        robokin.analyse_workspace(finger())
 
 
 def test_near_is_at_the_head_and_each_angle_is_turned_next_to_it():
@@ -284,3 +282,44 @@ def test_without_limits_a_ratio_has_no_end_of_turns():
     free = robokin.solve_ik(arm, T, limits=False)
     assert not free.complete
     assert free.basis is None
+
+
+def spare(limits=FREE):
+    """Two joints of a plane, one of which three variables move through two others."""
+    rows = tuple(Joint(f"j{i}", JointType.REVOLUTE, a=0.3, limits=limits) for i in (1, 2))
+    coupling = Coupling("j2", (("x", 2.0), ("y", 1.0)))
+    fields = {"name": "spare", "rows": rows}
+    own = [Joint(name, JointType.REVOLUTE, limits=limits) for name in ("j1", "x", "y")]
+    S = np.array([[1.0, 0.0, 0.0], [0.0, 2.0, 1.0]])
+    return CoupledRobot(**fields, drive=drive_of(rows, own, S, np.zeros(2), (coupling,)))
+
+
+def test_of_infinitely_many_postures_some_are_listed_far_from_each_other():
+    arm = spare((-1.5, 1.5))
+    T = robokin.forward_kinematics(arm, [0.2, 0.3, 0.4])
+    found = robokin.solve_ik(arm, T)
+    assert len(found) == 16 and not found.complete
+    assert found.certificate == "some of infinitely many, far from each other"
+    q = np.array([one.q for one in found])
+    gaps = np.max(np.abs(q[:, None] - q), axis=2)[~np.eye(16, dtype=bool)]
+    assert gaps.min() > 0.05
+    assert all(arm.within_limits(q)) and np.allclose(robokin.forward_kinematics(arm, q), T, atol=1e-8)
+    assert [len(robokin.solve_ik(arm, T, most=most)) for most in (1, 5)] == [1, 5]
+    near = robokin.solve_ik(arm, T, near=[0.2, 0.35, 0.3])
+    assert np.max(np.abs(near[0].q - [0.2, 0.35, 0.3])) < 0.03
+    moves = [np.max(np.abs(one.q - [0.2, 0.35, 0.3])) for one in near]
+    assert moves == sorted(moves)
+
+
+def test_a_finger_has_no_self_motion_and_all_that_is_found_is_listed():
+    arm = finger()
+    found = robokin.solve_ik(arm, robokin.forward_kinematics(arm, [0.1, 0.2, 0.3]), task="position")
+    assert found.certificate == "fewer freedoms than joints that move: found by search, which proves nothing"
+
+
+def test_more_variables_than_joints_place_a_point_as_the_joints_do():
+    arm = spare()
+    assert motion_task(arm).name == "position"
+    T = robokin.forward_kinematics(arm, [0.4, 0.3, 0.4])
+    assert robokin.follow_line(arm, [0.2, 0.3, 0.4], T, 10).complete
+    assert about_inverse(arm)[1].startswith("more variables than joints that they move")

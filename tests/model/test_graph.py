@@ -276,6 +276,15 @@ def test_what_is_no_graph_is_refused_with_a_sentence(parts, said):
 def test_an_unknown_tip_is_refused():
     with pytest.raises(InputError, match="found the unknown link 'thumb', expected one of a, b, c"):
         Graph(LINKS, JOINTS).chain("a", "thumb")
+    # Tips come before links, and a link's own name once.
+    named = Graph(LINKS, JOINTS, tips=(Tip("finger", 2), Tip("b", 1)))
+    with pytest.raises(InputError, match=r"found the unknown link 'thumb', expected one of finger, b, a, c$"):
+        named.chain("a", "thumb")
+    with pytest.raises(InputError, match=r"found the unknown link 'thumb', expected one of a, b, c$"):
+        named.chain("thumb", "finger")
+    many = tuple(f"l{i}" for i in range(20))
+    with pytest.raises(InputError, match=r"expected one of l0, .*l11, …$"):
+        Graph(many, tuple(GraphJoint(f"j{i}", "fixed", i, i + 1) for i in range(19))).chain("l0", "thumb")
 
 
 @pytest.mark.parametrize("pitch", [0.02, -0.005, 0.0])

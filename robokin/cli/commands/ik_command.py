@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from robokin.cli.completion import named_poses, words
+from robokin.cli.completion import named_poses, tip_targets, words
 from robokin.cli.cores import SOME, CoresOption, cores_worth, whole_cores
 from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
 from robokin.cli.options import DropOption, RobotArgument, choose, option, orientation_kind, whole_number
@@ -36,6 +36,7 @@ def command(
             "--target",
             "TIP=X,Y,Z|EXPR",
             "Of a tree with several tips: the position or the pose of one of them; repeatable.",
+            tip_targets,
         ),
     ] = None,
     input: Annotated[

@@ -45,7 +45,7 @@ def command(
         return _described(robot, output, description)
     kind = output.kind
     loaded = description.anything(robot)
-    made = _table_of_chain(loaded) if _a_chain_of_links(robot, description) else None
+    made = _table_of_chain(loaded) if _a_chain_of_links(robot, loaded, description) else None
     record = described_record(made or loaded, description.over(loaded.units))
     if made is not None:
         record["made_from"] = "frames"
@@ -65,11 +65,16 @@ def command(
     return 0
 
 
-def _a_chain_of_links(robot: str, description: DescriptionOptions) -> bool:
+def _a_chain_of_links(
+    robot: str, loaded: Robot | Mechanism | WheeledBase | Tree, description: DescriptionOptions
+) -> bool:
     """Whether what is shown is a chain of a tree, or of a file in another format, and no table that someone wrote."""
     from robokin.formats.library import FOREIGN
+    from robokin.model import Robot
 
-    return bool(description.tip or description.root) or Path(robot).suffix.lower() in FOREIGN
+    if description.tip or description.root or Path(robot).suffix.lower() in FOREIGN:
+        return True
+    return isinstance(loaded, Robot) and loaded.convention == "frames" and description.describes_tree(robot)
 
 
 def _table_of_chain(loaded: Robot | Mechanism | WheeledBase | Tree) -> Robot | None:
