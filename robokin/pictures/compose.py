@@ -15,7 +15,7 @@ from robokin.pictures.outline import CELLS, Outline, trace
 from robokin.pictures.picture import Cloud, OrientationDegrees, Panel
 from robokin.pictures.views import UPRIGHT, View, freed, section_view, slice_view
 from robokin.workspace.extremes import extent
-from robokin.workspace.membership import Membership, finitely_many
+from robokin.workspace.membership import Membership, counted
 from robokin.workspace.region import Region, region_of
 from robokin.workspace.sampling import joint_values, positions
 from robokin.workspace.size_cells import Cells, split_cells
@@ -83,7 +83,7 @@ def panel(
     without = None
     robot = view.space.robot
     limited = any(robot.revolute[i] and not view.space.full[i] for i in range(robot.n))
-    if limited:
+    if limited and view.space.gears is None:
         without = outline_in(replace(view, space=space_of(freed(robot))), cells)
     shown = [view.places(arm) for arm in arms]
     return Panel(view.title, view.labels, outline, without, shown, pose, degrees, view.radial)
@@ -95,7 +95,7 @@ def outline_in(view: View, cells: int | None = None) -> Outline:
     low, high = bounds_in(view)
     if rings_about(view):
         return _rings(view, float(np.max(np.abs([low, high]))))
-    if finitely_many(space):
+    if counted(space):
         return trace(view.contains, low, high, cells or CELLS)
     known = split_cells(Membership(space), plane_region(view), POINTS, POINTS, cores=None)
     return outline_of(known, cells)

@@ -11,7 +11,7 @@ from robokin.pictures.outline import Outline
 from robokin.pictures.text_pictures import braille, dot_grid, framed, shaded
 from robokin.pictures.views import View
 from robokin.units import Units
-from robokin.workspace.membership import finitely_many
+from robokin.workspace.membership import counted
 from robokin.workspace.workspace_result import Workspace
 
 CONFIGURATIONS = 1 << 18
@@ -53,9 +53,9 @@ def _dots(view: View, found: Workspace, grid: Array, step: float) -> Flags:
         inside &= (grid.reshape(-1, 2)[:, 0] >= 0.0) | (not view.radial)
         return np.asarray(inside.reshape(grid.shape[:2]))
     flat = space.dimension == 3 or (space.dimension == 2 and space.basis is not None)
-    if flat and (rings_about(view) or (space.dimension == 3 and not view.radial and not finitely_many(space))):
+    if flat and (rings_about(view) or (space.dimension == 3 and not view.radial and not counted(space))):
         return filled(outline_in(view), grid)
-    if flat and finitely_many(space):
+    if flat and counted(space):
         return view.contains(grid.reshape(-1, 2)).reshape(grid.shape[:2])
     rows, columns = grid.shape[:2]
     places = view.places(sampled(space, CONFIGURATIONS))

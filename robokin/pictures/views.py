@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.model import Robot
+from robokin.model import CoupledRobot, Robot
 from robokin.workspace.membership import reachable
 from robokin.workspace.space import Space, space_of
 
@@ -56,7 +56,18 @@ class View:
 
 
 def freed(robot: Robot, which: int | None = None) -> Robot:
-    """The robot with a revolute joint (from 0), or all of them, free to turn as far as they like."""
+    """The robot with a revolute joint (from 0), or all of them, free to turn as far as they like.
+
+    Where joints hang on each other that joint moves no other.
+    """
+    if isinstance(robot, CoupledRobot):
+        assert which is not None
+        drive = robot.drive
+        variables = tuple(
+            replace(joint, limits=(-np.inf, np.inf)) if i == which else joint for i, joint in enumerate(robot.joints)
+        )
+        limits = np.where(drive.S[:, [which]] != 0.0, [-np.inf, np.inf], drive.limits)
+        return replace(robot, drive=replace(drive, variables=variables, limits=limits))
     turning = [joint for i, joint in enumerate(robot.joints) if which in (None, i) and robot.revolute[i]]
     rows = tuple(
         replace(row, limits=(-np.inf, np.inf)) if any(row is joint for joint in turning) else row for row in robot.rows
@@ -70,7 +81,7 @@ def section_view(space: Space) -> View | None:
     Where the first joint's limits keep it from a whole turn, the set in the picture is that of all its half planes.
     """
     robot = space.robot
-    if space.dimension != 3 or not space.moving or space.moving[0] != 0 or not robot.revolute[0]:
+    if space.dimension != 3 or not space.moving or space.moving[0] != 0 or not robot.revolute[0] or not space.leads:
         return None
     turned = space if space.axis is not None else space_of(freed(robot, 0))
     assert turned.axis is not None

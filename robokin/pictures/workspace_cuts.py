@@ -10,7 +10,7 @@ from robokin.pictures.compose import outline_in, outline_of, plane_region, rings
 from robokin.pictures.outline import Outline
 from robokin.pictures.views import View, plane_view
 from robokin.units import Units
-from robokin.workspace.membership import Membership, finitely_many
+from robokin.workspace.membership import Membership, counted
 from robokin.workspace.size_cells import cells_of
 from robokin.workspace.sizes import Measure
 from robokin.workspace.workspace_result import Workspace
@@ -53,5 +53,5 @@ def cut_of(view: View, samples: int, seed: int = 0, cores: int | None = None) ->
     budget = max(samples // CUT_POINTS, LEAST_POINTS)
     area, cells = cells_of(Membership(view.space), plane_region(view), budget, seed, cores)
     # Where the set is known in closed form, or by its radii, its boundary is found without the cells.
-    exact = finitely_many(view.space) or rings_about(view)
+    exact = counted(view.space) or rings_about(view)
     return Cut(view.name, view.title, view.labels, outline_in(view) if exact else outline_of(cells), area)

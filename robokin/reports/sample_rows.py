@@ -136,7 +136,9 @@ class Samples:
     def settings(self) -> dict[str, Any]:
         """What decides about the file's bytes."""
         robot, chain = self.space.robot, self.space.chain
-        arrays = (chain.constants, chain.revolute, chain.offsets, self.space.low, self.space.high)
+        arrays = [chain.constants, chain.revolute, chain.offsets, self.space.low, self.space.high]
+        if self.space.gears is not None:
+            arrays += [self.space.gears.S, self.space.gears.cuts.G, self.space.gears.cuts.h]
         digest = hashlib.sha256(repr((robot.id, robot.name)).encode())
         for array in arrays:
             digest.update(np.ascontiguousarray(array).tobytes())

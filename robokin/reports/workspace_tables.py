@@ -177,6 +177,8 @@ def places_table(places: Sequence[WorkspacePlace], name: str, units: Units) -> b
 
 def solutions_text(place: WorkspacePlace) -> str:
     """How many configurations there are."""
+    if not place.counted:
+        return "not counted"
     return "infinitely many" if place.solutions is None else str(place.solutions)
 
 
@@ -187,8 +189,10 @@ def orientations_text(place: WorkspacePlace, units: Units) -> str:
         return "none"
     if place.group == "curve":
         return GROUPS["curve"]
+    if not place.tried and place.group != "finite":
+        return "not tried: joints hang on each other"
     if not place.tried:
-        return f"{reached} that differ"
+        return f"{reached} that differ" if place.counted else f"{reached} found by search"
     if len(place.ranges):
         return f"{100.0 * place.fraction:.1f} % of all angles{ranges_text(place, units)}"
     text = f"{100.0 * reached / place.tried:.1f} % of {place.tried} {WORDS[place.group]}"

@@ -10,7 +10,7 @@ from robokin.model import Robot, expect_robot
 from robokin.workspace.extremes import extent
 from robokin.workspace.measure import REDUNDANT, measurable, measure, structural_length
 from robokin.workspace.membership import decided
-from robokin.workspace.orientation import SPARE, dexterity
+from robokin.workspace.orientation import SPARE, dexterity, expect_turnable
 from robokin.workspace.sizes import Measure
 from robokin.workspace.space import space_of
 from robokin.workspace.workspace_result import Workspace
@@ -36,8 +36,8 @@ def analyse_workspace(
     samples: how many configurations or points may be looked at; the bound of the error falls with it. `sampling` is
     kept for who draws samples from the result; sizes always come from even sequences. `dextrous` adds how freely
     the tool can be turned, at places `voxel` [m] apart if it is given. The same answer for a seed on any number
-    of `cores` (None: all). Raises InputError for fewer samples than one, an unknown sampling, a robot without
-    joints and one whose sliding joints have no limits.
+    of `cores` (None: all). Raises InputError for fewer samples than one, an unknown sampling, a robot without joints or
+    whose values have no end, and `dextrous` where orientations could only be searched for.
 
     It is not called `workspace`, as is the package that it comes from.
     """
@@ -51,9 +51,10 @@ def analyse_workspace(
         if voxel <= 0.0:
             raise InputError(f"voxel: found {voxel:g}, expected a length [m] greater than 0")
     space = space_of(robot)
+    if dextrous:
+        expect_turnable(space)
     stage("bounds")
-    bounds = extent(space, seed)
-    notes, cells = [], None
+    bounds, notes, cells = extent(space, seed), [], None
     stage(space.quantity)
     if measurable(space):
         size, cells = measure(space, bounds, samples, seed, cores)

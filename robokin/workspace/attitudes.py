@@ -17,7 +17,7 @@ from typing import Literal
 
 import numpy as np
 
-from robokin.arrays import Array
+from robokin.arrays import Array, Flags
 from robokin.inverse.analysis import Task, analysis_of
 from robokin.kernel.frames import frames, pose
 from robokin.kernel.geometric_jacobian import jacobian_of
@@ -28,6 +28,9 @@ Group = Literal["SO(2)", "S2", "SO(3)", "curve", "finite"]
 
 ALIKE = 1e-6
 """Directions that differ by less are the same: axes come from tables printed to some five digits and more."""
+
+TASKS: dict[Group, Task] = {"SO(2)": "pose", "S2": "approach", "SO(3)": "pose"}
+"""What of the tool's pose counts where an orientation is of a group that has a grid."""
 
 GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 
@@ -65,9 +68,19 @@ def group_of(space: Space) -> Group:
     directions = int(np.max(np.sum(pointing > RANK, axis=1)))
     if directions < 2:
         return "curve"
-    idle = analysis_of(space.arm, "approach").idle
-    rolls = bool(idle) and all(space.full[~space.held][i] for i in idle)
+    if space.gears is None:
+        idle = analysis_of(space.arm, "approach").idle
+        rolls = bool(idle) and all(space.full[~space.held][i] for i in idle)
+    else:
+        rolls = bool(np.any(_idle(J, z_tool) & space.full))
     return "S2" if rank == 2 or rolls else "SO(3)"
+
+
+def _idle(J: Array, z_tool: Array) -> Flags:
+    """(n,) which variables only turn the tool about its z axis, by Jacobians (p, 6, n) and these axes (p, 3)."""
+    across = np.cross(np.swapaxes(J[:, 3:], 1, 2), z_tool[:, None])
+    moved = np.linalg.norm(J[:, :3], axis=1) + np.linalg.norm(across, axis=2)
+    return np.asarray((np.max(moved, axis=0) <= RANK) & np.any(J[:, 3:] != 0.0, axis=(0, 1)))
 
 
 def attitudes(space: Space, group: Group, count: int, seed: int) -> Attitudes:
@@ -77,15 +90,15 @@ def attitudes(space: Space, group: Group, count: int, seed: int) -> Attitudes:
         J, _ = _probes(space)
         axis = _one_direction(J)
         assert axis is not None
-        own = pose(space.chain, 0.5 * (space.low + space.high))[:3, :3]
+        own = pose(space.chain, space.motions(0.5 * (space.low + space.high)))[:3, :3]
         angles = 2.0 * np.pi * (np.arange(count) + rng.random()) / count
-        return Attitudes(group, rotation_from_axis_angle(axis, angles) @ own, "pose", 2.0 * np.pi / count, axis)
+        return Attitudes(group, rotation_from_axis_angle(axis, angles) @ own, TASKS[group], 2.0 * np.pi / count, axis)
     turned = rotation_from_quaternion(_unit(rng.normal(size=4)))
     if group == "S2":
-        return Attitudes(group, turned @ _pointing(spiral(count)), "approach", float(np.sqrt(4.0 * np.pi / count)))
+        return Attitudes(group, turned @ _pointing(spiral(count)), TASKS[group], float(np.sqrt(4.0 * np.pi / count)))
     if group == "SO(3)":
         spacing = float(np.cbrt(8.0 * np.pi**2 / count))
-        return Attitudes(group, turned @ rotation_from_quaternion(super_spiral(count)), "pose", spacing)
+        return Attitudes(group, turned @ rotation_from_quaternion(super_spiral(count)), TASKS[group], spacing)
     raise ValueError(f"no grid of orientations for {group}")
 
 
@@ -130,8 +143,8 @@ def _probes(space: Space) -> tuple[Array, Array]:
     """Jacobians (p, 6, n), linear part in sizes, and the tool's z axis (p, 3) at arbitrary configurations."""
     # Values of no meaning: whatever holds at all of them holds everywhere.
     q = space.low + (space.high - space.low) * np.random.default_rng(12).random((PROBES, space.robot.n))
-    F = frames(space.chain, q)
-    J = jacobian_of(F, space.chain.revolute, size=space.size)
+    F = frames(space.chain, space.motions(q))
+    J = space.by_variables(jacobian_of(F, space.chain.revolute, size=space.size), space.size)
     J[:, :, space.held] = 0.0
     return J, F[:, -1, :3, 2]
 

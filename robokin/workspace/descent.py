@@ -17,15 +17,20 @@ from __future__ import annotations
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
-from robokin.kernel.damped_newton import held_at, limited, solved
+from robokin.kernel.damped_newton import limited
 from robokin.kernel.facts import fact
-from robokin.kernel.geometric_jacobian import crossed, motion
 from robokin.workspace.extremes import extent, outermost
 from robokin.workspace.faces import edges_of, faces_of
+from robokin.workspace.geared_form import invertible
+from robokin.workspace.geared_slopes import GearedSlopes
+from robokin.workspace.geared_starts import PlacedStarts, geared_tables
 from robokin.workspace.one_spare import one_spare_of
 from robokin.workspace.sampling import moving_chain
+from robokin.workspace.slopes import STEP, Slopes
 from robokin.workspace.space import Space
 from robokin.workspace.starts import Starts
+
+Table = Starts | PlacedStarts
 
 REACHED = 1e-7
 """Distance, in the arm's size, at which a point is reached."""
@@ -50,6 +55,16 @@ NEAR_LAST = 3
 ALMOST, NEAR_ALMOST = 5e-5, 16
 """What is still this near [size], and no more, is sought from so many starts on each face and edge: where the arm is
 singular with joints at their limits, steps gain ever less, and only starts on the right side of it arrive."""
+
+NEAR_ALONE = 8, 48
+"""Searches from starts near a point, at least and at most, where joints hang on each other and no variable is to spare:
+only starts on the right one of several sheets arrive."""
+
+SHEETS = 4
+"""So many of them for each combination of quarters of a turn that the variables' ranges hold."""
+
+ALMOST_GEARED = 2e-4
+"""The same where joints hang on each other: no closed form has found what is beside a singular configuration."""
 
 ON_LIMIT, STEPS_ON_LIMITS = 1e-6, 20
 """How near a limit [rad | size] a joint counts as on it in the very last steps, and how many these are."""
@@ -76,15 +91,9 @@ OUTER, SWEEPS = 4096, 2
 """Starts that lie between a sampled configuration and one that is sought as far out as it comes, and how often each
 joint is given its best value for that: many joints are hardly ever all stretched by chance."""
 
-MANY, ROOM = 7, 1e-3
-"""From more joints on it is bounds and reach, with some room [size], that tell what need not be sought."""
-
-STEP = 0.6
-"""The longest step of one joint [rad | size]."""
-
-
-FLOOR, LEAST = 1e-2, 1e-11
-"""The least pivot, as a part of the distance, and what is always added to it and to the damping [1]."""
+MANY, MANY_GEARED, ROOM = 7, 4, 1e-3
+"""From more joints on, or from more variables where joints hang on each other, it is bounds and reach, with some room
+[size], that tell what need not be sought."""
 
 
 class Descent:
@@ -93,22 +102,33 @@ class Descent:
     def __init__(self, space: Space) -> None:
         moving = list(space.moving)
         self.chain = moving_chain(space)
+        self.slopes: Slopes | GearedSlopes = GearedSlopes(space) if space.gears is not None else Slopes(space)
         self.low, self.high, self.full = space.low[moving], space.high[moving], space.full[moving]
         self.size = space.size
         self.basis = space.basis if space.basis is not None else np.eye(3)
-        self.turning = self.chain.revolute[:, None, None].astype(np.float64)
-        self.all_turn = bool(self.chain.revolute.all())
         self.centre = space.centre
-        self.scale = np.where(self.chain.revolute, 1.0, space.size)[:, None]
-        self.lever = self.scale[:, :, None] / space.size
-        self.starts = Starts(self.chain, self.low, self.high, _outer(space))
         self.exact = one_spare_of(space)
-        box = self.chain, self.low, self.high, self.full
-        spare = len(moving) > space.dimension and self.exact is None
-        self.tables = [faces_of(*box), edges_of(*box)] if spare else []
-        self.every_table, self.learned = self.tables, list[Starts]()
+        # What closed forms give need not be sought from everywhere.
+        formed = space.gears is not None and len(moving) == space.dimension and invertible(space)
+        self.starts: Table
+        self.tables: list[list[Table]]
+        self.learned: list[Table] = []
+        if space.gears is None:
+            box = self.chain, self.low, self.high, self.full
+            spare = len(moving) > space.dimension and self.exact is None
+            self.starts = Starts(self.chain, self.low, self.high, _outer(space))
+            self.tables = [[*faces_of(*box)], [*edges_of(*box)]] if spare else []
+        else:
+            self.starts, faces, edges = geared_tables(space, self.slopes.place)
+            self.tables = [] if formed else [[*faces], [*edges]]
+        self.every_table = self.tables
+        quarters = np.maximum((self.high - self.low)[space.robot.revolute[moving]] / (0.5 * np.pi), 1.0)
+        alone = space.gears is not None and len(moving) == space.dimension and not formed
+        self.alone = int(np.clip(SHEETS * np.prod(quarters), *NEAR_ALONE)) if alone else 0
+        self.almost = ALMOST if space.gears is None else ALMOST_GEARED
         # Samples of many joints lie close together; what they leave empty may well be reached.
-        self.extent = extent(space) if len(moving) > MANY else None
+        many = MANY if space.gears is None else MANY_GEARED
+        self.extent = extent(space) if len(moving) > many else None
         # A joint that makes a whole turn may go round more than once.
         self.box = np.where(self.full, -np.inf, self.low)[:, None], np.where(self.full, np.inf, self.high)[:, None]
 
@@ -126,7 +146,7 @@ class Descent:
         where so far away that none was sought."""
         inside, q = self.reached(points)
         away = np.zeros(points.shape)
-        away[~inside] = points[~inside] - motion(self.chain, q[:, ~inside]).tool[3].T
+        away[~inside] = points[~inside] - self.slopes.place(q[:, ~inside]).T
         return away
 
     def reached(self, points: Array) -> tuple[Flags, Array]:
@@ -147,7 +167,10 @@ class Descent:
     def learn(self, q: Array) -> None:
         """Begin searches also at configurations q (n, k) [rad | m], since they lead where no others did."""
         self.tables = self.every_table
-        self.learned.append(Starts(self.chain, self.low, self.high, more=q, kept=0))
+        if isinstance(self.starts, Starts):
+            self.learned.append(Starts(self.chain, self.low, self.high, more=q, kept=0))
+        else:
+            self.learned.append(PlacedStarts(self.slopes.place, self.starts.basis, self.starts.dimension, q))
 
     def _beyond(self, points: Array) -> Flags:
         """(m,) whether points (3, m) [m] lie so far from what can be reached that they need not be sought."""
@@ -186,6 +209,10 @@ class Descent:
         if self.exact is not None and len(left):
             there, q = self.exact.reached(np.ascontiguousarray(points[:, left].T))
             inside[left[there]], values[:, left[there]] = True, q[:, there]
+        if self.alone:
+            left = np.flatnonzero(~inside)
+            starts = self.starts.near(points[:, left], self.alone, 0)[NEAR:]
+            self._search(points, left, starts, [(STUCK, STEPS)] * len(starts), inside, least, values)
         for tables in [*self.tables, self.learned]:
             left = np.flatnonzero(~inside)
             if len(left) and tables:
@@ -196,7 +223,7 @@ class Descent:
             more = [table.near(points[:, left], NEAR_LAST, 0) for table in (self.tables or [[]])[0]]
             starts = np.concatenate([values[None][:, :, left], *more])
             self._search(points, left, starts, [(STUCK_LAST, STEPS_LAST)] * len(starts), inside, least, values)
-        left = np.flatnonzero(~inside & (least <= ALMOST**2))
+        left = np.flatnonzero(~inside & (least <= self.almost**2))
         if len(left):
             more = [table.near(points[:, left], NEAR_ALMOST, 0) for tables in self.every_table for table in tables]
             starts = np.concatenate(more) if more else np.empty((0, len(values), len(left)))
@@ -212,15 +239,15 @@ class Descent:
         Joints at their limits stay there: what the others can do there alone may be ill conditioned, and damping holds
         them back.
         """
-        low, high, scale = self.low, self.high, self.scale[:, 0]
+        low, high, scale = self.low, self.high, self.slopes.scale[:, 0]
         held = ~self.full & ((q <= low + ON_LIMIT * scale) | (q >= high - ON_LIMIT * scale))
         least, best = float(np.inf), q
         for _ in range(STEPS_ON_LIMITS):
-            e, J, _ = self._model(t[:, None], q[:, None])
+            e, J = self.slopes.lacking(t, q)
             far = float(np.sum(e * e))
             if far < least:
                 least, best = far, q
-            dx = np.asarray(np.linalg.lstsq(np.where(held, 0.0, J[:, :, 0].T), e[:, 0], rcond=1e-12)[0], np.float64)
+            dx = np.asarray(np.linalg.lstsq(np.where(held, 0.0, J), e, rcond=1e-12)[0], np.float64)
             ahead = q + limited(dx[:, None], STEP, axis=0)[:, 0] * scale
             q = np.asarray(np.where(self.full, ahead, np.clip(ahead, low, high)))
         return least, best
@@ -266,52 +293,6 @@ class Descent:
         if len(reached):
             pool.drop(inside)
 
-    def _model(self, t: Array, q: Array) -> tuple[Array, Array, Array]:
-        """What q (n, m) lack of t, e: (3, m) [size]; the derivatives J of the position (n, 3, m) and, for each joint,
-        J_i - e × z_i (n, 3, m) [size]: its product with J_j, j >= i, is the second derivative of |e|² / 2."""
-        J, z, tool = motion(self.chain, q)
-        e = (t - tool[3]) / self.size
-        J *= self.lever
-        turned = crossed(e, z) if self.all_turn else crossed(e, z) * self.turning
-        return e, J, np.subtract(J, turned, out=turned)
-
-    def _step(self, e: Array, J: Array, H: Array, far: Array, mu: Array, q: Array) -> tuple[Array, Array]:
-        """The step (n, m) [rad | m], and what it promises to take off the squared distance (m,)."""
-        pull = np.sum(J * e, axis=1)
-        held = held_at(q, *self.box, pull)
-        dq, gain = newton_step(J, H, pull, held, far, mu)
-        pushed = held_at(q, *self.box, dq) & ~held
-        again = np.flatnonzero(pushed.any(axis=0))
-        if len(again):
-            J, H, pull, far, mu = (part.take(again, axis=-1) for part in (J, H, pull, far, mu))
-            dq[:, again], gain[again] = newton_step(J, H, pull, (held | pushed)[:, again], far, mu)
-        return limited(dq, STEP, axis=0) * self.scale, gain
-
-
-def newton_step(J: Array, H: Array, pull: Array, held: Flags, far: Array, mu: Array) -> tuple[Array, Array]:
-    """Newton's step (n, m) with some joints held, and what it promises to take off |e|² (m,), infinite where the
-    second derivatives are not those of a minimum."""
-    distance = np.sqrt(far)
-    floor, damping = FLOOR * distance + LEAST, mu * distance + LEAST
-    if held.any():
-        free = np.where(held, 0.0, 1.0)
-        J, H, pull = J * free[:, None], H * free[:, None], pull * free
-    # Only what is on and right of the diagonal counts.
-    A = H[:, None, 0] * J[None, :, 0]
-    A += H[:, None, 1] * J[None, :, 1]
-    A += H[:, None, 2] * J[None, :, 2]
-    plain = np.ones(len(far), dtype=bool)
-
-    def pivot(found: Array) -> Array:
-        found = found + damping
-        np.logical_and(plain, found > 0.0, out=plain)
-        return np.maximum(np.abs(found), floor)
-
-    dq, D, y = solved(A, pull, pivot)
-    gain = np.sum(y * y / D, axis=0)
-    gain[~plain] = np.inf
-    return dq, gain
-
 
 def _outer(space: Space) -> Array:
     """(n, OUTER) configurations from those of the inside to the outermost ones."""
@@ -340,8 +321,10 @@ class _Pool:
     def add(self, which: Index, q: Array, stuck: float, steps: int) -> None:
         """Searches for points `which` from q (n, k), until they are stuck or have made so many steps."""
         n, k = q.shape
-        e, J = np.zeros((3, k)), np.zeros((n, 3, k))
-        new = [q, q, e, J, J, np.full(k, np.inf), np.full(k, 2.0 * MU), np.full(k, float(steps)), np.full(k, stuck)]
+        new = [
+            q, q, np.full(k, np.inf), np.full(k, 2.0 * MU), np.full(k, float(steps)), np.full(k, stuck),
+            *self.descent.slopes.blank(n, k),
+        ]  # fmt: skip
         old = self.state or [part[..., :0] for part in new]
         self.state = [np.concatenate(pair, axis=-1) for pair in zip(old, new, strict=True)]
         self.which = np.concatenate([self.which, which])
@@ -358,19 +341,18 @@ class _Pool:
 
     def advance(self) -> tuple[Index, Array, Array]:
         """A step of every search: the points of those that ended, their squared distances and their values."""
-        q, tried, e, J, H, far, mu, left, stuck = self.state
-        e2, J2, H2 = self.descent._model(self.points.take(self.which, axis=1), tried)
-        far2 = np.sum(e2 * e2, axis=0)
+        q, tried, far, mu, left, stuck, *parts = self.state
+        far2, *parts2 = self.descent.slopes.model(self.points.take(self.which, axis=1), tried)
         better = far2 < far
         mu *= np.where(better, np.where(far2 < 0.1 * far, 0.1, 0.5), 8.0)
-        for old, new in ((q, tried), (e, e2), (J, J2), (H, H2), (far, far2)):
+        for old, new in ((q, tried), (far, far2), *zip(parts, parts2, strict=True)):
             np.copyto(old, new, where=better)
         left -= 1.0
-        dq, gain = self.descent._step(e, J, H, far, mu, q)
+        dq, gain = self.descent.slopes.step(q, self.descent.box, far, mu, parts)
         over = (far <= REACHED**2) | (gain <= stuck * far) | (left < 0.0)
         out = np.flatnonzero(over)
         answer = self.which[out], far[out], q[:, out]
-        self.state = [q, np.clip(q + dq, *self.descent.box), e, J, H, far, mu, left, stuck]
+        self.state = [q, np.clip(q + dq, *self.descent.box), far, mu, left, stuck, *parts]
         if len(out):
             self._keep(np.flatnonzero(~over))
         return answer

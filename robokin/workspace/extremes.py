@@ -29,12 +29,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from robokin.arrays import Array, Flags, Index
+from robokin.arrays import Array, Flags
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import held_at
 from robokin.kernel.facts import fact
-from robokin.kernel.frames import frames
-from robokin.kernel.geometric_jacobian import jacobian_of
+from robokin.workspace.geared_extremes import geared_best
+from robokin.workspace.goals import Goals, derivatives
 from robokin.workspace.sampling import joint_values, moving_chain, positions
 from robokin.workspace.sizes import Extent
 from robokin.workspace.space import TURN, Space
@@ -75,28 +75,6 @@ NOTHING = 1e-15
 
 
 @dataclass(frozen=True, eq=False)
-class _Goals:
-    """m functions f, in the arm's size: g (m, 3), w (m,), and c (3,)."""
-
-    g: Array
-    w: Array
-    c: Array
-
-    def values(self, p: Array) -> Array:
-        """The functions at p: (m, 3)."""
-        away = p - self.c
-        f: Array = np.sum(self.g * p, axis=1) + 0.5 * self.w * np.sum(away * away, axis=1)
-        return f
-
-    def slopes(self, p: Array) -> Array:
-        """Their gradients (m, 3) at p: (m, 3)."""
-        return self.g + self.w[:, None] * (p - self.c)
-
-    def taken(self, rows: Index) -> _Goals:
-        return _Goals(self.g[rows], self.w[rows], self.c)
-
-
-@dataclass(frozen=True, eq=False)
 class _Box:
     """The joints that move the origin, lengths in the arm's size: low, high, full (n,)."""
 
@@ -120,7 +98,10 @@ def _extent(space: Space, seed: int) -> Extent:
     origin = space.robot.base[:3, 3].copy()
     q = np.tile(0.5 * (space.low + space.high), (8, 1))
     if space.moving:
-        q[:, list(space.moving)] = _best(space, origin / space.size, seed)
+        goals = _eight(origin / space.size)
+        q[:, list(space.moving)] = (
+            _best(space, goals, seed) if space.gears is None else geared_best(space, goals, SAMPLES, seed)
+        )
     p = positions(space, q.T).T
     distances = np.linalg.norm(p - origin, axis=1)
     return Extent(
@@ -142,7 +123,7 @@ def outermost(space: Space, directions: Array, sweeps: int, seed: int = 0) -> Ar
     unit = np.where(box.chain.revolute, 1.0, space.size)
     count = len(directions)
     q = joint_values(space, "sobol", seed, 0, count, count).T[:, list(space.moving)] / unit
-    goals = _Goals(-directions, np.zeros(count), np.zeros(3))
+    goals = Goals(-directions, np.zeros(count), np.zeros(3))
     for _ in range(sweeps):
         _sweep(box, goals, q)
     values = q * unit
@@ -150,9 +131,14 @@ def outermost(space: Space, directions: Array, sweeps: int, seed: int = 0) -> Ar
     return np.asarray(np.where(full, low + np.mod(values - low, TURN), np.clip(values, low, high)).T)
 
 
-def _best(space: Space, origin: Array, seed: int) -> Array:
-    """The best values (8, n) [rad | m] of the moving joints for low and high, least and greatest; origin in sizes."""
-    eight = _Goals(np.concatenate([np.eye(3), -np.eye(3), np.zeros((2, 3))]), np.array([0.0] * 6 + [1.0, -1.0]), origin)
+def _eight(origin: Array) -> Goals:
+    """Low and high along the axes, least and greatest distance from an origin (3,) [size]."""
+    g = np.concatenate([np.eye(3), -np.eye(3), np.zeros((2, 3))])
+    return Goals(g, np.array([0.0] * 6 + [1.0, -1.0]), origin)
+
+
+def _best(space: Space, eight: Goals, seed: int) -> Array:
+    """The best values (8, n) [rad | m] of the moving joints for low and high, least and greatest."""
     box = _scaled(space)
     unit = np.where(box.chain.revolute, 1.0, space.size)
 
@@ -205,7 +191,7 @@ def _scaled(space: Space) -> _Box:
     return _Box(scaled, space.low[moving] / unit, space.high[moving] / unit, space.full[moving])
 
 
-def _sweep(box: _Box, goals: _Goals, q: Array) -> Array:
+def _sweep(box: _Box, goals: Goals, q: Array) -> Array:
     """Give each joint in turn its best value, in place, in q: (m, n); the functions' values (m,) before the sweep."""
     chain = box.chain
     # What follows each joint, at the values it will have when the joint's turn comes.
@@ -261,9 +247,9 @@ def _best_length(box: _Box, i: int, w: Array, h: Array, s: Array) -> Array:
     return best
 
 
-def _polish(box: _Box, goals: _Goals, q: Array) -> Array:
+def _polish(box: _Box, goals: Goals, q: Array) -> Array:
     """Newton's method, in place, on q: (m, n); the functions' values (m,) at its end."""
-    p, gradient, H = _derivatives(box.chain, goals, q)
+    p, gradient, H = derivatives(box.chain, goals, q)
     f = goals.values(p)
     radius = np.full(len(q), 0.5)
     for _ in range(STEPS):
@@ -280,7 +266,7 @@ def _polish(box: _Box, goals: _Goals, q: Array) -> Array:
         length = np.linalg.norm(step, axis=1)
         step *= np.minimum(1.0, radius / np.maximum(length, 1e-300))[:, None]
         q_new = _inside(box, q, step)
-        p, gradient_new, H_new = _derivatives(box.chain, goals, q_new)
+        p, gradient_new, H_new = derivatives(box.chain, goals, q_new)
         f_new = goals.values(p)
         better = going & (f_new < f)
         length = np.minimum(length, radius)
@@ -302,15 +288,3 @@ def _inside(box: _Box, q: Array, step: Array) -> Array:
     limit = np.where(step < 0, box.low, box.high)
     moved = np.where(to_limit <= share, limit, moved)
     return np.where(box.full, moved, np.clip(moved, box.low, box.high))
-
-
-def _derivatives(chain: Chain, goals: _Goals, q: Array) -> tuple[Array, Array, Array]:
-    """p (m, 3), and the functions' gradients (m, n) and Hessians (m, n, n) at q: (m, n)."""
-    F = frames(chain, q)
-    p, J = F[:, -1, :3, 3], jacobian_of(F, chain.revolute)[:, :3].swapaxes(1, 2)
-    slope = goals.slopes(p)
-    gradient = np.einsum("mik,mk->mi", J, slope)
-    bent = np.where(chain.revolute[:, None], np.cross(slope[:, None], F[:, :-1, :3, 2]), 0.0)
-    second = np.triu(bent @ J.swapaxes(1, 2))
-    second = second + np.triu(second, 1).swapaxes(1, 2)
-    return p, gradient, second + goals.w[:, None, None] * (J @ J.swapaxes(1, 2))

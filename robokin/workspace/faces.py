@@ -40,7 +40,7 @@ def faces_of(chain: Chain, low: Array, high: Array, full: Flags) -> list[Starts]
     if len(low) > MANY:
         limited = np.flatnonzero(~full)
         chosen = limited if len(limited) else chosen[-1:]
-    holds = [((int(i), value),) for i in chosen for value in _held(low, high, full, int(i), SECTIONS[0])]
+    holds = [((int(i), value),) for i in chosen for value in held_values(low, high, full, int(i), SECTIONS[0])]
     return _tables(chain, (low, high), holds, FACE)
 
 
@@ -49,12 +49,12 @@ def edges_of(chain: Chain, low: Array, high: Array, full: Flags) -> list[Starts]
     n = len(low)
     if n > MANY:
         return []
-    each = [[(i, v) for v in _held(low, high, full, i, SECTIONS[1])] for i in range(n)]
+    each = [[(i, v) for v in held_values(low, high, full, i, SECTIONS[1])] for i in range(n)]
     pairs = [pair for i, j in combinations(range(n), 2) for pair in product(each[i], each[j])]
     return _tables(chain, (low, high), pairs, EDGE)
 
 
-def _held(low: Array, high: Array, full: Flags, i: int, sections: int) -> list[float]:
+def held_values(low: Array, high: Array, full: Flags, i: int, sections: int) -> list[float]:
     """The values at which joint i is held."""
     if full[i]:
         return [float(low[i] + (high[i] - low[i]) * (k + 0.5) / sections) for k in range(sections)]

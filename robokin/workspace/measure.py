@@ -1,9 +1,11 @@
 """How large a reachable set is: its length, area or volume, with a bound of the error.
 
-- Where as many joints move the tool's origin as the set has dimensions: the integral over the joints (coarea.py).
-- Where more do, membership of points decides (descent.py), in cells that are split at the boundary (cells.py). A
-  set that is symmetric about the first axis is measured in its section. One that is not, only since the first joint
-  has limits, is made so by freeing it, and what that adds is taken off again:
+- Where as many joints move the tool's origin as the set has dimensions: the integral over the joints (coarea.py); also
+  where each hangs on a variable of its own, by any ratio.
+- Of curves and surfaces that variables reach which move several joints, and of lines: geared_size.py.
+- Else, where more do or variables move several joints, membership of points decides (descent.py), in cells that are
+  split at the boundary (cells.py). A set that is symmetric about the first axis is measured in its section. One that is
+  not, only since the first joint has limits, is made so by freeing it, and what that adds is taken off again:
 
   Let the first joint turn from a to b, and let S be the section of the set with that joint free. A point of S that
   some configuration reaches when the first joint is at q1 is reached as it turns by t, if a - q1 <= t <= b - q1: of
@@ -20,9 +22,11 @@ import numpy as np
 
 from robokin.arrays import Array, Flags
 from robokin.jobs.ordered_map import ordered_map
-from robokin.model import Robot
+from robokin.model import CoupledRobot, Robot
 from robokin.workspace.coarea import coarea_measure
 from robokin.workspace.descent import descent_of
+from robokin.workspace.geared_form import one_by_one
+from robokin.workspace.geared_size import curved_measure, line_measure
 from robokin.workspace.membership import Membership, decided, finitely_many, reachable
 from robokin.workspace.region import Region, region_of
 from robokin.workspace.sampling import moving_chain
@@ -77,7 +81,12 @@ def measure(
     """
     if not space.moving:
         return Measure(0.0, 0.0, "no joint moves the tool's origin", 0), None
-    if finitely_many(space):
+    space = one_by_one(space)
+    if space.gears is not None and space.dimension == 1 and space.basis is not None:
+        return line_measure(space, seed), None
+    if space.gears is not None and space.basis is None and finitely_many(space):
+        return curved_measure(space, samples, seed), None
+    if finitely_many(space) and space.gears is None:
         return coarea_measure(space, samples, seed, cores), None
     if not measurable(space):
         raise ValueError("the size of a curved set that too many joints reach")
@@ -122,19 +131,20 @@ def structural_length(robot: Robot) -> float:
 
     The length of a robot that is described by frames instead of a table is that of its transforms' translations.
     The sum is the length sum of J. J. Craig, Introduction to Robotics: Mechanics and Control. Infinite where a
-    sliding joint has no limits.
+    sliding joint has no limits; of one that others move the stroke is what their limits leave it.
     """
     total = float(np.linalg.norm(robot.tool[:3, 3]))
     for row in robot.rows:
         total += abs(row.a) + abs(row.d) + (0.0 if row.origin is None else float(np.linalg.norm(row.origin[:3, 3])))
-    slides = ~robot.revolute
-    return total + float(np.sum(robot.limits[slides, 1] - robot.limits[slides, 0]))
+    arm = robot.bounded_motion if isinstance(robot, CoupledRobot) else robot
+    slides = ~arm.revolute
+    return total + float(np.sum(arm.limits[slides, 1] - arm.limits[slides, 0]))
 
 
 def _symmetric_if_free(space: Space) -> bool:
     """Whether the set would be symmetric about the first axis if the first joint, which turns far, had no limits."""
     first = space.moving[0]
-    turns = first == 0 and space.robot.revolute[first] and space.dimension > 1
+    turns = space.leads and first == 0 and space.robot.revolute[first] and space.dimension > 1
     return bool(turns and space.high[first] - space.low[first] >= HALF)
 
 

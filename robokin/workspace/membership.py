@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from robokin.arrays import Array, Flags, Index
 from robokin.workspace.descent import REACHED, descent_of
+from robokin.workspace.geared_form import geared_form_of, invertible, one_by_one
 from robokin.workspace.placing_joints import closed_form_of
-from robokin.workspace.sampling import moving_chain
+from robokin.workspace.sampling import moving_chain, moving_gears
 from robokin.workspace.space import Space
 
 
@@ -23,10 +24,10 @@ def reachable(space: Space, points: ArrayLike) -> Flags:
     `decided` says so. What the closed forms of the others do not give is sought, too: next to a singular
     configuration they may lose it.
     """
-    p = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+    p, space = np.asarray(points, dtype=np.float64).reshape(-1, 3), one_by_one(space)
     if not space.moving:
         return np.asarray(np.linalg.norm(p - space.centre, axis=1) <= 1e-7 * space.size)
-    if not finitely_many(space):
+    if not counted(space):
         return descent_of(space).reachable(p)
     there = np.asarray(solution_count(space, p) > 0)
     there[~there] = descent_of(space).reachable(p[~there])
@@ -35,7 +36,8 @@ def reachable(space: Space, points: ArrayLike) -> Flags:
 
 def decided(space: Space) -> bool:
     """Whether `reachable` says no only of what cannot be reached, but for points that fill nothing."""
-    return not space.moving or finitely_many(space) or descent_of(space).exact is not None
+    space = one_by_one(space)
+    return not space.moving or counted(space) or descent_of(space).exact is not None
 
 
 def proven_out(space: Space, points: ArrayLike) -> Flags:
@@ -45,7 +47,11 @@ def proven_out(space: Space, points: ArrayLike) -> Flags:
     if decided(space):
         return np.ones(len(p), dtype=bool)
     chain, moving = moving_chain(space), list(space.moving)
-    ways = np.maximum(np.abs(space.low[moving] + chain.offsets), np.abs(space.high[moving] + chain.offsets))
+    low, high = space.low[moving], space.high[moving]
+    if space.gears is not None:
+        ends = np.stack([moving_gears(space) * low, moving_gears(space) * high])
+        low, high = ends.min(axis=0).sum(axis=1), ends.max(axis=0).sum(axis=1)
+    ways = np.maximum(np.abs(low + chain.offsets), np.abs(high + chain.offsets))
     length = float(np.sum(np.linalg.norm(chain.constants[1:, :3, 3], axis=1)) + np.sum(ways[~chain.revolute]))
     out = np.linalg.norm(p - chain.constants[0, :3, 3], axis=1) > (1.0 + REACHED) * length
     if space.basis is not None:
@@ -71,19 +77,31 @@ class Membership:
     @property
     def lacks(self) -> Callable[[Array], Array] | None:
         """How points (m, 3) [m] lie from the set, (m, 3): what its searches found, where it makes any."""
-        return descent_of(self.space).lacks if self.space.moving and not finitely_many(self.space) else None
+        space = one_by_one(self.space)
+        return descent_of(space).lacks if space.moving and not counted(space) else None
 
 
 def solution_count(space: Space, points: ArrayLike) -> Index:
     """(m,) how many configurations of the moving joints, within limits, bring the tool's origin to each point (m, 3).
 
-    Raises ValueError where more joints move the origin than the set has dimensions: there are infinitely many.
+    Raises ValueError where more joints move the origin than the set has dimensions: there are infinitely many; and
+    where joints follow others, so that no closed form gives them.
     """
     if not finitely_many(space):
         raise ValueError("infinitely many configurations reach a point of this set")
+    if not counted(space):
+        raise ValueError("no closed form counts the configurations of joints that follow others")
+    space = one_by_one(space)
+    if space.gears is not None:
+        return geared_form_of(space).counts(np.asarray(points, dtype=np.float64).reshape(-1, 3))
     return closed_form_of(space).counts(np.asarray(points, dtype=np.float64).reshape(-1, 3))
 
 
 def finitely_many(space: Space) -> bool:
     """Whether only finitely many values of the moving joints reach a point of the set, but for a set of no size."""
     return len(space.moving) == space.dimension > 0
+
+
+def counted(space: Space) -> bool:
+    """Whether these are finitely many and closed forms give them all: not where joints follow others."""
+    return finitely_many(space) and (space.gears is None or invertible(space))

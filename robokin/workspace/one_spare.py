@@ -69,7 +69,7 @@ class OneSpare:
 def one_spare_of(space: Space) -> OneSpare | None:
     """What tells whether points of a space can be reached, if it is of this kind."""
     n, d = len(space.moving), space.dimension
-    if n != d + 1 or space.basis is None or d < 2 or not _in_a_plane(space, n - 3):
+    if space.gears is not None or n != d + 1 or space.basis is None or d < 2 or not _in_a_plane(space, n - 3):
         return None
     chain, low, high, full = _box(space)
     rng = np.random.default_rng(31)

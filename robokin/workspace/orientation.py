@@ -26,7 +26,8 @@ from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
 from robokin.jobs.ordered_map import ordered_map
 from robokin.jobs.stages import stage
-from robokin.workspace.attitudes import Attitudes, Group, attitudes, group_of
+from robokin.model import CoupledRobot
+from robokin.workspace.attitudes import TASKS, Attitudes, Group, attitudes, group_of
 from robokin.workspace.critical import Every, worst_beyond
 from robokin.workspace.measure import several_measure
 from robokin.workspace.membership import finitely_many
@@ -35,7 +36,7 @@ from robokin.workspace.region import Region, region_of
 from robokin.workspace.size_cells import RISK, checked, split_cells
 from robokin.workspace.sizes import Extent, Measure
 from robokin.workspace.space import Space
-from robokin.workspace.trials import fractions, table, telling_order
+from robokin.workspace.trials import fractions, table, telling_order, tried_by_forms
 from robokin.workspace.workspace_result import Dexterity
 
 USUAL = 131072
@@ -90,8 +91,10 @@ def dexterity(
 ) -> Dexterity:
     """How freely the tool of an arm can be turned; reach: the size of its reachable set, voxel: the cells' side [m].
 
-    Raises InputError for a voxel that is larger than the set or makes more than MOST_CELLS cells.
+    Raises InputError for a voxel that is larger than the set or makes more than MOST_CELLS cells, and where joints
+    follow others or hang on each other with joints to spare, and the tool can be turned on the spot.
     """
+    expect_turnable(space)
     if not space.dimension:
         return _of_a_point(space, reach, samples, seed)
     group = group_of(space)
@@ -99,7 +102,7 @@ def dexterity(
         several = _few(space, reach, samples, seed, cores) if group == "finite" else _almost_all(reach)
         none = Measure(0.0, 0.0, "too few orientations at every place for all of them", 0)
         return Dexterity(group, 0, 0.0, np.zeros((0, 3)), 0.0, np.zeros(0), False, 0.0, reach, several, none)
-    redundant = analysis_of(space.arm, "approach" if group == "S2" else "pose").redundancy > 0
+    redundant = analysis_of(space.arm, TASKS[group]).redundancy > 0
     scale = np.sqrt(samples / USUAL / (REDUNDANT if redundant else 1))
     # More places tell the set's size better; more orientations only that none between them was overlooked.
     count = max(int(ORIENTATIONS[group] * min(scale, np.sqrt(scale))), 16 * COARSE)
@@ -133,6 +136,16 @@ def dexterity(
     )
 
 
+def expect_turnable(space: Space) -> None:
+    """Raise InputError for a robot whose orientations could only be searched for: no size of theirs would be sound."""
+    group, robot = group_of(space), space.robot
+    if group in TASKS and isinstance(robot, CoupledRobot) and not tried_by_forms(space, TASKS[group]):
+        raise InputError(
+            f"dextrous: {robot.coupled}: with which orientations a place is reached could only be searched for, "
+            "expected an arm without joints that follow others or to spare"
+        )
+
+
 def _of_a_point(space: Space, reach: Measure, samples: int, seed: int) -> Dexterity:
     """The orientations at the only place that the tool's origin comes to."""
     group = group_of(space)
@@ -148,7 +161,7 @@ def _few(space: Space, reach: Measure, samples: int, seed: int, cores: int | Non
     """The size of the lecture's set where a place leaves finitely many orientations."""
     if not space.arm.revolute.any():
         return Measure(0.0, 0.0, "sliding joints alone never turn the tool", 0)
-    if finitely_many(space) and len(space.moving) == space.arm.n:
+    if space.gears is None and finitely_many(space) and len(space.moving) == space.arm.n:
         return several_measure(space, samples, seed, cores)
     # Joints to spare that cannot turn the tool on the spot: what may be is all that is known.
     half = 0.5 * (reach.value + reach.error)

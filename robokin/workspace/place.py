@@ -18,10 +18,10 @@ from robokin.inverse.analysis import Task
 from robokin.inverse.solve import solve_many
 from robokin.kinematics.forward import forward_kinematics
 from robokin.spatial import rotation_from_axis_angle, transform
-from robokin.workspace.attitudes import ALIKE, Attitudes, Group, attitudes, group_of
-from robokin.workspace.membership import finitely_many, proven_out, reachable, solution_count
+from robokin.workspace.attitudes import ALIKE, TASKS, Attitudes, Group, attitudes, group_of
+from robokin.workspace.membership import counted, finitely_many, proven_out, reachable, solution_count
 from robokin.workspace.space import Space
-from robokin.workspace.trials import at_one_place, reached_beside, reached_by_search
+from robokin.workspace.trials import at_one_place, reached_beside, reached_by_search, tried_by_forms
 
 TRIED: dict[Group, int] = {"SO(2)": 360, "S2": 1000, "SO(3)": 2000}
 """Orientations at a place that is asked about."""
@@ -42,7 +42,7 @@ class WorkspacePlace(Brief):
     or none can be reached: ranges (k, 2, 3, 3), the first and the last rotation of each range that can, to rounding,
     in the direction of a positive turn about that coordinate axis of the world that is most along it; fraction: the
     part of all that the ranges are, else of those tried. proven: whether a place that is not reachable is proven not to
-    be, True where it is."""
+    be, True where it is. counted: False where the number of configurations, though finite, is not known."""
 
     point: Array
     reachable: bool
@@ -53,6 +53,7 @@ class WorkspacePlace(Brief):
     ranges: Array = field(default_factory=lambda: np.zeros((0, 2, 3, 3)))
     fraction: float = float("nan")
     proven: bool = True
+    counted: bool = True
 
 
 def at_point(space: Space, point: ArrayLike, orientations: int | None = None, seed: int = 0) -> WorkspacePlace:
@@ -66,14 +67,18 @@ def _at_point(space: Space, point: ArrayLike, orientations: int | None, seed: in
     if p.shape != (3,) or not np.all(np.isfinite(p)):
         raise InputError("a place must be three finite numbers")
     group = group_of(space)
-    count = int(solution_count(space, p[None])[0]) if finitely_many(space) else None
+    count = int(solution_count(space, p[None])[0]) if counted(space) else None
     some = bool(reachable(space, p[None])[0])
     count = max(count, 1) if some and count is not None else count
     if group in ("finite", "curve"):
         turned = _turned_ways(space, p) if some else []
         if not some or not space.arm.n:
             count = int(some)
-        return WorkspacePlace(p, some, group, 0, _different(turned), count if group == "finite" or not some else None)
+        count = count if group == "finite" or not some else None
+        known = counted(space) or not (some and finitely_many(space))
+        return WorkspacePlace(p, some, group, 0, _different(turned), count, counted=known)
+    if not tried_by_forms(space, TASKS[group]):
+        return WorkspacePlace(p, some, group, 0, np.zeros((0, 3, 3)), None if some else 0)
     grid = attitudes(space, group, orientations or TRIED[group], seed)
     flags = at_one_place(space, grid, p) if some else np.zeros(len(grid.rotations), dtype=bool)
     part = float(np.mean(flags))
@@ -85,8 +90,9 @@ def _turned_ways(space: Space, p: Array) -> list[Array]:
     """Rotations (3, 3) of the tool that inverse kinematics finds for a place (3,) [m]."""
     if not space.arm.n:
         return [forward_kinematics(space.robot, 0.5 * (space.low + space.high))[:3, :3]]
-    found = solve_many(space.arm, transform(np.eye(3), p)[None], task="position")[0]
-    return [forward_kinematics(space.arm, s.q)[:3, :3] for s in found.solutions]
+    arm = space.robot if space.gears is not None else space.arm
+    found = solve_many(arm, transform(np.eye(3), p)[None], task="position")[0]
+    return [forward_kinematics(arm, s.q)[:3, :3] for s in found.solutions]
 
 
 def _with_ranges(space: Space, grid: Attitudes, flags: Flags, place: WorkspacePlace) -> WorkspacePlace:

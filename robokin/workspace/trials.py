@@ -14,12 +14,23 @@ from robokin.inverse.verify import Found, within_limits
 from robokin.jobs.ordered_map import ordered_map
 from robokin.kernel.chain import chain_of
 from robokin.kernel.frames import pose
+from robokin.model import CoupledRobot
 from robokin.spatial import transform
 from robokin.workspace.attitudes import Attitudes
+from robokin.workspace.geared_form import unwinding_of
 from robokin.workspace.space import Space
 
 ABOUT, BESIDE = 1.7, 3
 """How far an orientation may be from a reached one to be sought from there, in the grid's spacing; from how many."""
+
+
+def tried_by_forms(space: Space, task: Task) -> bool:
+    """Whether closed forms tell which orientations can be reached: where joints hang on each other only those of arms
+    without joints to spare, each of whose joints' values has its variables."""
+    robot = space.robot
+    if not isinstance(robot, CoupledRobot):
+        return True
+    return robot.drive.invertible and not analysis_of(space.arm, task).redundancy
 
 
 def reached(space: Space, tried: Attitudes, points: Array, which: Index) -> Flags:
@@ -42,6 +53,10 @@ def configurations(space: Space, task: Task, points: Array, rotations: Array) ->
         part = slice(start, start + BLOCK)
         T = transform(rotations[part], points[part])
         found = quick_block(analysis, T, robot.limits, rest)
+        if space.gears is not None:
+            index, q = unwinding_of(space)(found.index, found.q)
+            answers[start + index], values[start + index] = True, q
+            continue
         q, inside = within_limits(found.q, robot.revolute, robot.limits, None)
         answers[start + found.index[inside]] = True
         values[start + found.index[inside]] = q[inside]

@@ -17,9 +17,10 @@ from robokin.arrays import Array
 from robokin.jobs.ordered_map import ordered_map
 from robokin.jobs.sequences import unit_points
 from robokin.workspace.descent import descent_of
+from robokin.workspace.geared_starts import spread_to_limits
 from robokin.workspace.membership import Membership, reachable
 from robokin.workspace.region import Region
-from robokin.workspace.sampling import positions
+from robokin.workspace.sampling import moving_cuts, positions
 from robokin.workspace.size_cells import RISK, poisson_limit
 from robokin.workspace.space import Space
 
@@ -55,10 +56,14 @@ def _witnesses(space: Space, region: Region, count: int, seed: int, round_: int)
     """(n, k) configurations, one for each cell that some reach of a lattice of about `count` cells."""
     moving = list(space.moving)
     drawn = DRAWN * count
-    u = unit_points("sobol", len(moving), seed, 0, drawn, drawn, 1000 + round_)
-    u[:, ::2] = np.clip((1.0 + 2.0 * BEYOND) * u[:, ::2] - BEYOND, 0.0, 1.0)
     q = np.tile(0.5 * (space.low + space.high)[:, None], (1, drawn))
-    q[moving] = space.low[moving, None] + (space.high - space.low)[moving, None] * u
+    if space.gears is not None:
+        low, high = space.low[moving], space.high[moving]
+        q[moving] = spread_to_limits(moving_cuts(space), low, high, drawn, 1000 + round_, seed)
+    else:
+        u = unit_points("sobol", len(moving), seed, 0, drawn, drawn, 1000 + round_)
+        u[:, ::2] = np.clip((1.0 + 2.0 * BEYOND) * u[:, ::2] - BEYOND, 0.0, 1.0)
+        q[moving] = space.low[moving, None] + (space.high - space.low)[moving, None] * u
     place = region.coordinates(positions(space, q).T)
     sides = region.high - region.low
     shape = np.maximum(np.round(sides / float(np.prod(sides) / count) ** (1.0 / len(sides))), 1.0)

@@ -214,11 +214,6 @@ def test_turns_that_no_list_holds_are_refused():
         robokin.solve_ik(arm, T)
 
 
-def test_what_has_no_answer_yet_is_refused():
-    with pytest.raises(robokin.InputError, match="joint dip hangs on pip"):
-        robokin.analyse_workspace(finger())
-
-
 def test_near_is_at_the_head_and_each_angle_is_turned_next_to_it():
     limits = np.tile([-2.5 * np.pi, 2.5 * np.pi], (6, 1))
     limits[3] = -np.inf, np.inf

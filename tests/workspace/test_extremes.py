@@ -13,7 +13,8 @@ from robokin.errors import InputError
 from robokin.kinematics.forward import forward_kinematics
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_transform, translation_transform
-from robokin.workspace.extremes import _derivatives, _Goals, _polish, _scaled, _sweep, extent
+from robokin.workspace.extremes import _polish, _scaled, _sweep, extent
+from robokin.workspace.goals import Goals, derivatives
 from robokin.workspace.sampling import sample_blocks
 from robokin.workspace.space import space_of
 
@@ -221,11 +222,11 @@ def test_a_slide_without_limits_is_named():
 def test_gradients_and_hessians_are_finite_differences(name, rng):
     box = _scaled(space_of(robokin.load(name)))
     m, n, step = 6, box.chain.n, 1e-5
-    goals = _Goals(rng.normal(size=(m, 3)), rng.normal(size=m), rng.normal(size=3))
+    goals = Goals(rng.normal(size=(m, 3)), rng.normal(size=m), rng.normal(size=3))
     q = rng.uniform(-1, 1, (m, n))
-    _, gradient, H = _derivatives(box.chain, goals, q)
+    _, gradient, H = derivatives(box.chain, goals, q)
     for i in range(n):
-        ahead, behind = (_derivatives(box.chain, goals, q + sign * step * np.eye(n)[i]) for sign in (1, -1))
+        ahead, behind = (derivatives(box.chain, goals, q + sign * step * np.eye(n)[i]) for sign in (1, -1))
         slope = (goals.values(ahead[0]) - goals.values(behind[0])) / (2 * step)
         assert np.allclose(gradient[:, i], slope, rtol=0, atol=1e-8)
         assert np.allclose(H[:, i], (ahead[1] - behind[1]) / (2 * step), rtol=0, atol=1e-8)
@@ -274,7 +275,7 @@ def test_a_dense_search_finds_nothing_beyond(number):
     q = box.low + (box.high - box.low) * np.where(part < 0.0, rng.random(part.shape), part)
     g = np.concatenate([np.eye(3), -np.eye(3), np.zeros((2, 3))])
     w, origin = np.array([0.0] * 6 + [1.0, -1.0]), space.robot.base[:3, 3] / space.size
-    goals = _Goals(np.repeat(g, each, axis=0), np.repeat(w, each), origin)
+    goals = Goals(np.repeat(g, each, axis=0), np.repeat(w, each), origin)
     for _ in range(12):
         f = _sweep(box, goals, q)
     order = np.argsort(f.reshape(8, each), axis=1)[:, :24]

@@ -249,7 +249,8 @@ def _views(space: Space, units: Units, section: bool, slices: Sequence[str]) -> 
     if section:
         view = section_view(space)
         if view is None:
-            raise InputError(f"--section: the first joint of {space.robot.name} does not turn it, expected --slice")
+            turns = "does not turn it" if space.leads else "moves others, too"
+            raise InputError(f"--section: the first joint of {space.robot.name} {turns}, expected --slice")
         views.append(view)
     for text in slices:
         name, equals, value = (part.strip() for part in text.partition("="))
