@@ -158,6 +158,7 @@ def space_fault(mechanism: Mechanism) -> str | None:
             return None
         z = np.array([joint.axes[0] for joint in hinges if joint.axes is not None])
         o = np.array([joint.at for joint in hinges if joint.at is not None])
+        o = o - np.mean(o, axis=0)  # far from the origin its own rounding would be that of the distances
         off = np.eye(3) - z[:, :, None] * z[:, None, :]
         point = np.linalg.lstsq(off.reshape(-1, 3), np.einsum("kij,kj->ki", off, o).ravel(), rcond=1e-9)[0]
         distance = np.linalg.norm(np.einsum("kij,kj->ki", off, point - o), axis=1)

@@ -4,10 +4,10 @@ Statement. Given reduced constraints g(x) = 0 that do not vanish all about x = 0
 find the branches of their zeros that pass through 0, and the dimension of each.
 
 1. *Sought* on a sphere as large as can be solved, and *followed* to the pose, as smaller spheres have zeros near by
-   (`zeros`).
+   (`zeros`). Where there are several branches they are sought again from other directions, until nothing is added.
 2. *Measured* at a point of each: there the constraints vanish all about in as many dimensions (`measured`).
 3. Points of one branch are put *together*: curves that leave the pose in one direction and its opposite, surfaces with
-   one tangent plane at the pose, and cones, whose planes turn from point to point.
+   one tangent plane at the pose, which is theirs all about it, and cones, whose planes turn from point to point.
 
 Where nothing is found, nothing leads away from the pose. What this rests on is the number of directions: on a
 circle (two dimensions) none is left out, on spheres a thin branch may be. The rest are calculations at points, no
@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations, pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,10 +30,23 @@ from robokin.arrays import Array
 from robokin.mobility.measured import DOUBLE, Branch, loose_kernel, measured
 from robokin.mobility.reduced import Reduced
 from robokin.mobility.repeated import repeated
-from robokin.mobility.zeros import DIFFERENT, FOLLOWED, NARROWEST, WIDEST, apart, followed, sought, spread
+from robokin.mobility.zeros import (
+    DIFFERENT,
+    FOLLOWED,
+    NARROWEST,
+    WIDEST,
+    apart,
+    followed,
+    sought,
+    spread,
+    zeros_on_sphere,
+)
 
 SAME = 0.1
 """Directions, or planes of directions, that differ by less at the least sphere are of one branch."""
+
+ALONG = np.array([0.5, 1.1, 2.0])
+"""How far along a surface [rad] its plane is looked at again, as a cone may hardly turn for a part of the way."""
 
 ONCE = 1e-4
 """Points of multiple curves [rad | size] that are measured not farther apart are one."""
@@ -41,11 +55,35 @@ MEASURED = 8
 """Points of each kind that are measured where the branch is multiple, which takes long; else half of those followed."""
 
 
+SEVERAL = 3
+"""Branches from which on others may have been missed, of a kernel of more dimensions than a circle's."""
+
+IDLE, TURNS = 2, 12
+"""Turns that add nothing before the search ends, and turns at most."""
+
+NARROWER = (0.7, 0.5)
+"""Parts of the sphere on which is sought again where zeros were lost on the way to the pose: of a double branch that
+may be for its rounding alone."""
+
 UNMEASURED = (
     "configurations seem to lead away from this pose along which constraints vanish too often for their dimension "
     "to be measured"
 )
 """Why there may be more than the branches that are known."""
+
+
+class Measured(NamedTuple):
+    """A point of a branch: a basis (k, dimension) of the branch's directions where it is nearest to the pose, and
+    whether these are the same all about there, as of a curve or a smooth surface, and not those of a cone."""
+
+    branch: Branch
+    plane: Array
+    even: bool
+
+    @property
+    def multiple(self) -> bool:
+        """Whether the constraints vanish more than once along the branch."""
+        return self.branch.kernel > self.branch.dimension
 
 
 def branches_of(reduced: Reduced, reached: Array) -> tuple[list[Branch], str | None]:
@@ -56,46 +94,69 @@ def branches_of(reduced: Reduced, reached: Array) -> tuple[list[Branch], str | N
     radius = float(min(np.median(reached[reached > 0.0]), WIDEST)) if np.any(reached > 0.0) else 0.0
     if radius < 8.0 * NARROWEST:
         return [], "the loops cannot be closed again far enough from this pose"
-    x, y = sought(reduced, radius)
+    found: list[Measured] = []
+    decided, lost = _sought_for(reduced, radius, 0, found)
+    idle, turn = 0, 1
+    while decided and idle < IDLE and turn < TURNS:
+        several = reduced.k > 2 and len(_merged(reduced, found)) >= SEVERAL
+        if not several and not (lost and turn <= len(NARROWER)):
+            break
+        before, part = len(found), 1.0 if several else NARROWER[turn - 1]
+        decided, lost = _sought_for(reduced, part * radius, turn, found)
+        idle, turn = (idle + 1 if len(found) == before else 0), turn + 1
+    return _merged(reduced, found), None if decided else UNMEASURED
+
+
+def _sought_for(reduced: Reduced, radius: float, turn: int, found: list[Measured]) -> tuple[bool, bool]:
+    """Add points of branches to those that were found, each with a basis of its directions at the pose; whether the
+    dimensions at all that lead to the pose could be told, and whether any elsewhere were lost on the way to it. After
+    the first turn only of branches that are not known."""
+    x, y = sought(reduced, radius, turn, [point.plane for point in found])
     through = followed(reduced, x, y, radius) if len(x) else None
     if through is None:
-        return [], None
-    found: list[tuple[Branch, Array]] = []
+        return True, len(x) > 0
+    sphere = x
     missed: list[int] = []
     wide, q, x, y = through
     for alike in _to_measure(reduced, wide, q):
         for count, i in enumerate(alike):
-            if count >= MEASURED and any(branch.kernel > branch.dimension for branch, _ in found):
+            if count >= MEASURED and any(point.multiple for point in found):
                 break  # multiple branches take long
-            if _known(x[i], [plane for branch, plane in found if branch.kernel > branch.dimension]):
+            if _known(x[i], [point.plane for point in found if point.multiple]):
+                continue
+            if turn and _on(x[i], found):
                 continue
             branch = measured(reduced, q[i], 0.25 * radius)
             if branch is None:
                 missed.append(i)
             else:
-                found.append((branch, _plane(reduced, branch, x[i], y[i])))
-    if _missing(reduced, found, missed, q, x, y, 0.25 * radius):
-        return _merged(reduced, found), UNMEASURED
-    return _merged(reduced, found), None
+                found.append(_point(reduced, branch, x[i], y[i]))
+    lost = len(sphere) > len(x) and not all(_on(each, found) for each in sphere)
+    return not _missing(reduced, found, missed, q, x, y, 0.25 * radius), lost
+
+
+def _on(x: Array, found: list[Measured]) -> bool:
+    """Whether the direction of a point x (k,) is one of those of branches that were found."""
+    d = x / np.linalg.norm(x)
+    return any(np.linalg.norm(d - point.plane @ (point.plane.T @ d)) <= SAME for point in found)
 
 
 def _missing(
-    reduced: Reduced, found: list[tuple[Branch, Array]], missed: list[int], q: Array, x: Array, y: Array, radius: float
+    reduced: Reduced, found: list[Measured], missed: list[int], q: Array, x: Array, y: Array, radius: float
 ) -> bool:
     """Whether some points whose dimension could not be told are of no branch that was measured; those of branches where
     the constraints vanish many times over are told now, and added to what was found."""
     tried = 0
     for i in missed:
         # A point where branches meet cannot be measured; it is of those that were measured beside it.
-        d = x[i] / np.linalg.norm(x[i])
-        if any(np.linalg.norm(d - plane @ (plane.T @ d)) <= SAME for _, plane in found):
+        if _on(x[i], found):
             continue
         tried += 1
         values = Reduced(reduced.chart, q[i]).values
         branch = repeated(reduced.chart, q[i], loose_kernel(reduced, values), radius) if tried <= MEASURED else None
         if branch is None:
             return True
-        found.append((branch, _plane(reduced, branch, x[i], y[i])))
+        found.append(_point(reduced, branch, x[i], y[i]))
     return False
 
 
@@ -148,41 +209,71 @@ def _to_measure(reduced: Reduced, x: Array, q: Array) -> list[list[int]]:
     return chosen
 
 
-def _merged(reduced: Reduced, found: list[tuple[Branch, Array]]) -> list[Branch]:
-    """Points of one branch together: one of each branch, the greatest dimension first.
-
-    found: the branch at a point, with a basis (k, dimension) of its directions where it is nearest to the pose.
-    """
+def _merged(reduced: Reduced, found: list[Measured]) -> list[Branch]:
+    """Points of one branch together: one of each branch, the greatest dimension first."""
     merged: list[Branch] = []
-    for dimension, kernel in sorted({(b.dimension, b.kernel) for b, _ in found}, key=lambda kind: (-kind[0], kind[1])):
-        alike = [entry for entry in found if (entry[0].dimension, entry[0].kernel) == (dimension, kernel)]
-        groups = _groups(alike, SAME)
-        if dimension > 1 and len(groups) > 1:
-            # On a cone the planes turn from point to point, so there are about as many as points, or as they are told.
-            scattered = len(groups) >= max(4, len(alike) // 3) or len(_groups(alike, 0.3 * SAME)) > len(groups)
-            groups = groups[:1] if scattered else groups
+    kinds = {(point.branch.dimension, point.branch.kernel) for point in found}
+    for dimension, kernel in sorted(kinds, key=lambda kind: (-kind[0], kind[1])):
+        alike = [point for point in found if (point.branch.dimension, point.branch.kernel) == (dimension, kernel)]
+        groups = _groups([point for point in alike if point.even], SAME)
+        groups += _bent([point for point in alike if not point.even])
         for members in groups:
             # A curve leaves the pose both ways: two half branches are one, four that touch are two.
             # A multiple zero that is not sharp may have been found twice.
-            places = np.array([branch.q for branch, _ in members])
+            places = np.array([point.branch.q for point in members])
             once = ONCE if kernel > dimension else 0.0
             halves = len(apart(places, once, len(members))) if dimension == 1 else 1
-            merged += [replace(branch, start=reduced.V0 @ plane) for branch, plane in members[: (halves + 1) // 2]]
+            merged += [replace(p.branch, start=reduced.V0 @ p.plane) for p in members[: (halves + 1) // 2]]
     return merged
 
 
-def _groups(found: list[tuple[Branch, Array]], same: float) -> list[list[tuple[Branch, Array]]]:
-    """Branches whose directions are the same."""
-    groups: list[list[tuple[Branch, Array]]] = []
-    for branch, plane in found:
+def _bent(alike: list[Measured]) -> list[list[Measured]]:
+    """Points of surfaces that are not even, or multiple, by surface."""
+    groups = _groups(alike, SAME)
+    if len(groups) < 2:
+        return groups
+    # On a cone the planes turn from point to point, so there are about as many as points, or as they are told.
+    scattered = len(groups) >= max(4, len(alike) // 3) or len(_groups(alike, 0.3 * SAME)) > len(groups)
+    return groups[:1] if scattered else groups
+
+
+def _groups(found: list[Measured], same: float) -> list[list[Measured]]:
+    """Points whose planes are the same."""
+    groups: list[list[Measured]] = []
+    for point in found:
         for group in groups:
-            other = group[0][1]
-            if np.linalg.norm(plane @ plane.T - other @ other.T, 2) < same:
-                group.append((branch, plane))
+            if _differ(point.plane, group[0].plane) < same:
+                group.append(point)
                 break
         else:
-            groups.append([(branch, plane)])
+            groups.append([point])
     return groups
+
+
+def _differ(one: Array, other: Array) -> float:
+    """The sine of the greatest angle between two planes, bases (k, d) of which are given."""
+    return float(np.linalg.norm(one @ one.T - other @ other.T, 2))
+
+
+def _point(reduced: Reduced, branch: Branch, x: Array, y: Array) -> Measured:
+    """A branch that was measured, as it is at the pose, near which it has the point x (k,), y (r,)."""
+    plane = _plane(reduced, branch, x, y)
+    even = branch.dimension == 1 or (branch.kernel == branch.dimension and _even(reduced, branch, plane, x, y))
+    return Measured(branch, plane, even)
+
+
+def _even(reduced: Reduced, branch: Branch, plane: Array, x: Array, y: Array) -> bool:
+    """Whether a surface has the same plane (k, d) beside its point x (k,), y (r,), all round it."""
+    radius = float(np.linalg.norm(x))
+    d = x / radius
+    ways = np.linalg.svd(plane - np.outer(d, d @ plane), full_matrices=False)[0][:, : branch.dimension - 1].T
+    turns = np.concatenate([ALONG, -ALONG])[:, None, None]
+    ahead = radius * (np.cos(turns) * d + np.sin(turns) * ways).reshape(-1, reduced.k)
+    begin = np.tile(y, (len(ahead), 1))
+    there, y_, size = zeros_on_sphere(reduced, ahead, begin, radius, np.zeros(len(ahead), dtype=bool), 20)
+    if np.max(size) > 10.0 * float(reduced.tolerance(radius)):
+        return False
+    return all(_differ(_plane(reduced, branch, a, b), plane) < SAME for a, b in zip(there, y_, strict=True))
 
 
 def _plane(reduced: Reduced, branch: Branch, x: Array, y: Array) -> Array:

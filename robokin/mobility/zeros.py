@@ -11,6 +11,8 @@ lost, or whose direction jumps, was not on a branch that passes through the pose
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from robokin.arrays import Array, Flags
@@ -36,6 +38,9 @@ COMING = 1e-2
 FOLLOWED = 40
 """Zeros that are followed to the pose, those that are farthest apart."""
 
+ASIDE = 0.2
+"""Points nearer than this [radius] to directions that are known are of those, which bend up to here."""
+
 DIFFERENT = 1e-5
 """Points that differ by more [radius] are different: a double zero is known to 1e-7."""
 
@@ -49,40 +54,51 @@ TURN = 0.5
 """Cosine of the greatest turn of a branch's direction as its sphere is halved."""
 
 
-def spread(k: int) -> Array:
-    """Directions (N, k): all round a circle, evenly over a sphere, and drawn once and for all beyond."""
+def spread(k: int, turn: int = 0) -> Array:
+    """Directions (N, k): all round a circle, evenly over a sphere, and drawn once and for all beyond; others, drawn
+    too, for every further turn."""
+    if turn:
+        d = np.random.default_rng((20, turn)).normal(size=(40 * min(k, 16), k))
+        return np.asarray(d / np.linalg.norm(d, axis=1)[:, None])
     if k == 2:
         angles = 0.013 + 2.0 * np.pi * np.arange(64) / 64.0
         return np.stack([np.cos(angles), np.sin(angles)], axis=1)
     if k == 3:
         i = np.arange(120) + 0.5
-        z, turn = 1.0 - 2.0 * i / 120.0, np.pi * (1.0 + 5.0**0.5) * i
+        z, angle = 1.0 - 2.0 * i / 120.0, np.pi * (1.0 + 5.0**0.5) * i
         ring = np.sqrt(1.0 - z * z)
-        return np.stack([ring * np.cos(turn), ring * np.sin(turn), z], axis=1)
+        return np.stack([ring * np.cos(angle), ring * np.sin(angle), z], axis=1)
     d = np.random.default_rng(20).normal(size=(20 * min(k, 16), k))
     d = np.concatenate([d, np.eye(k) + 0.01, -np.eye(k) + 0.01])
     return np.asarray(d / np.linalg.norm(d, axis=1)[:, None])
 
 
-def sought(reduced: Reduced, radius: float) -> tuple[Array, Array]:
-    """Zeros on the sphere, those that are different: x (N, k), y (N, r)."""
-    begun = reduced.at(radius * spread(reduced.k))
+def sought(reduced: Reduced, radius: float, turn: int = 0, known: Sequence[Array] = ()) -> tuple[Array, Array]:
+    """Zeros on the sphere, those that are different: x (N, k), y (N, r); from other directions for another turn.
+
+    known: bases (k, d) of directions that are not of interest.
+    """
+    begun = reduced.at(radius * spread(reduced.k, turn))
     keep = begun.solved
     if not np.any(keep):
         return begun.x[:0], begun.y[:0]
     scale = float(np.median(np.max(np.abs(begun.g[keep]), axis=1)))
     x, y = (np.concatenate([part[keep], part[keep]]) for part in (begun.x, begun.y))
     damped = np.arange(len(x)) < len(x) // 2
-    x, y, size = _on_sphere(reduced, x, y, radius, damped, FIRST_STEPS)
+    x, y, size = zeros_on_sphere(reduced, x, y, radius, damped, FIRST_STEPS)
     (near,) = np.nonzero(size < COMING * scale)
+    for plane in known:
+        near = near[np.linalg.norm(x[near] - x[near] @ plane @ plane.T, axis=1) > ASIDE * radius]
+    if not len(near):
+        return x[near], y[near]
     near = near[apart(x[near], 1e-2 * radius, FOLLOWED)]
-    x, y, size = _on_sphere(reduced, x[near], y[near], radius, damped[near], STEPS)
+    x, y, size = zeros_on_sphere(reduced, x[near], y[near], radius, damped[near], STEPS)
     bound = max(CLEAR * scale, 10.0 * float(reduced.tolerance(radius)))
     going = np.nonzero((size > bound) & (size < SLOW * scale))[0]
     for _ in range(LONGER):
         if not len(going):
             break
-        after = _on_sphere(reduced, x[going], y[going], radius, damped[near][going], FIRST_STEPS)
+        after = zeros_on_sphere(reduced, x[going], y[going], radius, damped[near][going], FIRST_STEPS)
         better = after[2] < 0.3 * size[going]
         x[going], y[going], size[going] = after
         going = going[better & (after[2] > bound)]
@@ -91,7 +107,7 @@ def sought(reduced: Reduced, radius: float) -> tuple[Array, Array]:
     return x[zero], y[zero]
 
 
-def _on_sphere(
+def zeros_on_sphere(
     reduced: Reduced, x: Array, y: Array, radius: float, damped: Flags, steps: int
 ) -> tuple[Array, Array, Array]:
     """Zeros x, y on |x| = radius near by, and what g and the regular equations leave there (N,).
@@ -159,7 +175,7 @@ def followed(reduced: Reduced, x: Array, y: Array, radius: float) -> tuple[Array
             return (wide[near], half[near], x[near], y[near]) if np.any(near) else None
         if scale == 0.0:
             return None
-        x_, y_, size = _on_sphere(reduced, 0.5 * x, 0.25 * y, smaller, np.zeros(len(x), dtype=bool), 20)
+        x_, y_, size = zeros_on_sphere(reduced, 0.5 * x, 0.25 * y, smaller, np.zeros(len(x), dtype=bool), 20)
         straight = np.sum(x_ * x, axis=1) > TURN * smaller * radius
         keep = straight & (size < max(1e-6 * scale, 10.0 * float(reduced.tolerance(smaller))))
         if not np.any(keep):

@@ -13,6 +13,7 @@ from robokin.pictures.compose import bounds_in
 from robokin.pictures.picture import OrientationDegrees
 from robokin.pictures.views import View
 from robokin.workspace.attitudes import Group, attitudes
+from robokin.workspace.pose_descent import searched
 from robokin.workspace.trials import fractions
 from robokin.workspace.workspace_result import Workspace
 
@@ -22,6 +23,9 @@ SQUARES = 120
 
 PLACES = 40
 """Squares along the longer side of a plane where orientations are tried for the picture alone."""
+
+SEARCHED_PLACES = 24
+"""The same where every orientation is searched for, which takes some milliseconds."""
 
 FEWER = 2
 """One in so many of a map's orientations is tried there: colours need no more than 300."""
@@ -70,13 +74,13 @@ class OrientationMap:
         space, dexterity = found.space, found.dexterity
         assert dexterity is not None
         low, high = bounds_in(view)
-        cell = float(np.max(high - low)) / PLACES
+        group = cast(Group, dexterity.group)
+        tried = attitudes(space, group, max(dexterity.orientations // FEWER, LEAST), found.seed)
+        cell = float(np.max(high - low)) / (SEARCHED_PLACES if searched(space, tried.task) else PLACES)
         places = _middles(low, high, cell)
         places = places[view.contains(places)]
         if not len(places):
             return None
-        group = cast(Group, dexterity.group)
-        tried = attitudes(space, group, max(dexterity.orientations // FEWER, LEAST), found.seed)
         fraction = fractions(space, tried, view.points(places), cores)
         return cls(view, None, True, np.zeros(0), cell, np.zeros(0))._filled(places, fraction, 2)
 

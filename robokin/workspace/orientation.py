@@ -23,7 +23,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import InputError
-from robokin.inverse.analysis import analysis_of
+from robokin.inverse.analysis import Task, analysis_of
 from robokin.jobs.ordered_map import ordered_map
 from robokin.jobs.stages import stage
 from robokin.model import CoupledRobot
@@ -32,6 +32,7 @@ from robokin.workspace.critical import Every, worst_beyond
 from robokin.workspace.measure import several_measure
 from robokin.workspace.membership import finitely_many
 from robokin.workspace.place import at_point
+from robokin.workspace.pose_descent import searched
 from robokin.workspace.region import Region, region_of
 from robokin.workspace.size_cells import RISK, checked, split_cells
 from robokin.workspace.sizes import Extent, Measure
@@ -79,6 +80,15 @@ SPARE = "orientations of an arm with joints to spare that are called impossible 
 REDUNDANT = 48
 """An arm with joints to spare is solved for some fifty values of them: for so many times fewer queries."""
 
+SEARCHED = 192
+"""One that has no closed form either is searched for each orientation, which takes as long as some two hundred."""
+
+FEWER = (
+    "every orientation is searched for, as this arm has a joint to spare and no closed form: with as many samples "
+    "fewer orientations and places are tried than of other arms, and the bounds are wider"
+)
+"""What is to be known of the sizes of such arms' sets."""
+
 
 def dexterity(
     space: Space,
@@ -102,8 +112,7 @@ def dexterity(
         several = _few(space, reach, samples, seed, cores) if group == "finite" else _almost_all(reach)
         none = Measure(0.0, 0.0, "too few orientations at every place for all of them", 0)
         return Dexterity(group, 0, 0.0, np.zeros((0, 3)), 0.0, np.zeros(0), False, 0.0, reach, several, none)
-    redundant = analysis_of(space.arm, TASKS[group]).redundancy > 0
-    scale = np.sqrt(samples / USUAL / (REDUNDANT if redundant else 1))
+    scale = np.sqrt(samples / USUAL / (_cost(space, TASKS[group]) if group in TASKS else 1))
     # More places tell the set's size better; more orientations only that none between them was overlooked.
     count = max(int(ORIENTATIONS[group] * min(scale, np.sqrt(scale))), 16 * COARSE)
     fine, coarse = attitudes(space, group, count, seed), attitudes(space, group, count // COARSE, seed)
@@ -144,6 +153,13 @@ def expect_turnable(space: Space) -> None:
             f"dextrous: {robot.coupled}: with which orientations a place is reached could only be searched for, "
             "expected an arm without joints that follow others or to spare"
         )
+
+
+def _cost(space: Space, task: Task) -> int:
+    """How long it takes to find out about one orientation, against an arm with a closed form and no joint to spare."""
+    if searched(space, task):
+        return SEARCHED
+    return REDUNDANT if analysis_of(space.arm, task).redundancy else 1
 
 
 def _of_a_point(space: Space, reach: Measure, samples: int, seed: int) -> Dexterity:

@@ -18,6 +18,7 @@ from robokin.model import CoupledRobot
 from robokin.spatial import transform
 from robokin.workspace.attitudes import Attitudes
 from robokin.workspace.geared_form import unwinding_of
+from robokin.workspace.pose_descent import searched, sought_poses
 from robokin.workspace.space import Space
 
 ABOUT, BESIDE = 1.7, 3
@@ -45,6 +46,8 @@ def reached_with(space: Space, task: Task, points: Array, rotations: Array) -> F
 
 def configurations(space: Space, task: Task, points: Array, rotations: Array) -> tuple[Flags, Array]:
     """(m,) the same, and a configuration of the space's arm for each, (m, n) [rad | m], NaN where there is none."""
+    if searched(space, task):
+        return sought_poses(space, task, points, rotations)
     robot = space.arm
     analysis = analysis_of(robot, task)
     rest = np.clip(0.0, robot.limits[:, 0], robot.limits[:, 1])
@@ -67,7 +70,7 @@ def reached_with_more(space: Space, task: Task, points: Array, rotations: Array)
     """(m,) as `reached_with`; of an arm with a joint to spare with more values of it where the usual ones do not do."""
     there = reached_with(space, task, points, rotations)
     robot, analysis = space.arm, analysis_of(space.arm, task)
-    left = np.flatnonzero(~there) if analysis.redundancy else np.zeros(0, dtype=np.intp)
+    left = np.flatnonzero(~there) if _spare_in_closed_form(space, task) else np.zeros(0, dtype=np.intp)
     rest = np.clip(0.0, robot.limits[:, 0], robot.limits[:, 1])
     for start in range(0, len(left), BLOCK):
         some = left[start : start + BLOCK]
@@ -189,7 +192,7 @@ def every(space: Space, tried: Attitudes, order: Index, points: Array) -> Flags:
 def _all_with_more(space: Space, tried: Attitudes, points: Array, which: Index, flags: Flags) -> Flags:
     """(m,) at which of points (m, 3) [m] all of some orientations are reached, of which flags (m, k) are known to be;
     of an arm with a joint to spare the first that is not is tried with more values of it before a point is given up."""
-    if analysis_of(space.arm, tried.task).redundancy:
+    if _spare_in_closed_form(space, tried.task):
         flags = flags.copy()
         left = np.flatnonzero(~np.all(flags, axis=1))
         while len(left):
@@ -199,6 +202,11 @@ def _all_with_more(space: Space, tried: Attitudes, points: Array, which: Index, 
             flags[left, first] = True
             left = left[~np.all(flags[left], axis=1)]
     return np.asarray(np.all(flags, axis=1))
+
+
+def _spare_in_closed_form(space: Space, task: Task) -> bool:
+    """Whether an arm has joints to spare that are held at some values, of which there are more."""
+    return analysis_of(space.arm, task).redundancy > 0 and not searched(space, task)
 
 
 def telling_order(flags: Flags, seed: int) -> Index:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mobility import known
-from mobility.linkages import bennett, four_bar, linkage
+from mobility.linkages import bennett, four_bar, linkage, loop
 from mobility.test_library import anywhere
 from sweeps import sweep
 
@@ -88,6 +88,24 @@ def test_cranks_of_any_number_and_spacing_at_their_change_point(seed):
     slanted = [("R", names, (x + (0.6 if "b" in names else 0.0), 1.0 if "b" in names else 0.0))
                for x in places for names in (("0", f"c{x}"), (f"c{x}", "b"))]  # fmt: skip
     assert (mobility_of(linkage(slanted)).mobility, mobility_of(linkage(slanted)).motion.instantaneous) == (1, 1)
+
+
+@pytest.mark.parametrize("seed, scale", [(2, 1e3), (5, 1.0), (3, 1e-3)])
+def test_a_branch_beside_a_surface_is_not_lost_for_rounding(seed, scale):
+    """Five equal legs: the swing of the platform is a surface, beside it there is one narrow way to twist and rise."""
+    other = anywhere(
+        known.hexagon("U", legs=5, radius=1.0, height=2.4), np.random.default_rng(seed), 10.0 ** (seed - 4)
+    )
+    assert dimensions(mobility_of(other)) == [2, 1]
+
+
+@pytest.mark.parametrize("far", [0.0, 1e4, 1e8])
+def test_a_spherical_mechanism_may_be_anywhere(far):
+    axes = [(np.cos(a), np.sin(a), 0.0) for a in (0.0, 0.4, 0.9, 1.3)]
+    rng = np.random.default_rng(4)
+    R, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    found = mobility_of(loop([(far * np.array([0.3, -0.7, 0.5]), R @ axis) for axis in axes], "spherical"))
+    assert (found.mobility, found.motion.order) == (0, 2)
 
 
 def test_branches_say_what_moves_in_them():

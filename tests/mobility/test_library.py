@@ -69,7 +69,8 @@ TABLE = {
 }
 
 # The kernel's dimension at the configuration drawn, where it is not the mobility; by hand and from the same study.
-INSTANTANEOUS = {"shaky-triangle": 1, "shaky-triangle-on-a-hinge": 2, "flat-parallelogram": 2, "3-upu-snu": 5}
+INSTANTANEOUS = {"shaky-triangle": 1, "shaky-triangle-on-a-hinge": 2, "flat-parallelogram": 2, "3-upu-snu": 5,
+                 "kinematotropic-cranks": 3}  # fmt: skip
 
 # Redundant constraints that the study gives beside the table.
 REDUNDANT = {
@@ -79,7 +80,7 @@ REDUNDANT = {
 
 VERDICTS = {
     "shaky-triangle": "shaky", "shaky-triangle-on-a-hinge": "shaky", "flat-parallelogram": "singular",
-    "3-upu-snu": "singular",
+    "3-upu-snu": "singular", "kinematotropic-cranks": "singular",
 }  # fmt: skip
 
 MECHANISMS = names_of(Mechanism)
@@ -275,6 +276,9 @@ SETTINGS = [
     ("orthoglide", {"inset": "20"}), ("delta", {"angle": "45"}), ("3-upu", {"platform": "1.5"}),
     ("3-upu-snu", {"platform": "2"}), ("flat-parallelogram", {"crank": "3"}), ("peaucellier-lipkin", {"angle": "-25"}),
     ("jansen-leg", {"angle": "200"}), ("klann-leg", {"angle": "300"}), ("planetary-three-planets", {"sun": "5"}),
+    ("burmester-focal", {"a": "4", "t2": "100"}), ("burmester-focal", {"b": "4.5", "t4": "320"}),
+    ("dixon-second", {"a": "1.4", "d": "0.9"}), ("roberts-cognates", {"u": "1.3", "v": "-0.4"}),
+    ("roberts-cognates", {"AD": "3", "Cy": "2"}), ("kinematotropic-cranks", {"r1": "0.4"}),
 ]  # fmt: skip
 
 
@@ -288,7 +292,8 @@ def test_what_is_special_is_in_the_expressions(name, values):
 
 @pytest.mark.parametrize("name, values, mobility", [
     ("bennett", {"beta": "40"}, 0), ("goldberg-5r", {"gamma": "30"}, 0),
-    ("parallel-four-bar-detuned", {"excess": "0"}, 1),
+    ("parallel-four-bar-detuned", {"excess": "0"}, 1), ("burmester-focal", {"s": "0.9"}, 0),
+    ("roberts-cognates", {"C1x": "2"}, 0),
 ])  # fmt: skip
 def test_what_is_special_can_be_spoiled(name, values, mobility):
     assert mobility_of(load_any(name, values)).mobility == mobility

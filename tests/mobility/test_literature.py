@@ -6,7 +6,7 @@ from itertools import permutations
 
 import numpy as np
 import pytest
-from mobility import literature
+from mobility import literature, variations
 from mobility.linkages import linkage, unit
 from mobility.test_library import anywhere
 from sweeps import sweep
@@ -15,7 +15,7 @@ from robokin.mobility.trace import trace
 from robokin.mobility.verdict import mobility_of
 from robokin.model import Mechanism, MechanismJoint
 
-ENTRIES = list(literature.entries())
+ENTRIES = [*literature.entries(), *variations.entries()]
 
 
 def dimensions(found):

@@ -66,6 +66,20 @@ class Guesses:
         chosen: Array = self.q[np.concatenate([best, corners], axis=1)]
         return chosen
 
+    def nearest_first(self, T: Array, size: float, count: int) -> Index:
+        """(m, count) which of the guesses of all parts and corners are nearest to targets T (m, 4, 4) [m], nearest
+        first; count: at most GUESSES."""
+        weight = np.concatenate([np.full(9, np.sqrt(TURN / 2.0)), np.full(3, 1.0 / size)])
+        own, wished = (weight[:, None] * X[:, :3].transpose(2, 1, 0).reshape(12, -1) for X in (self.poses, T))
+        # Less the target's own square, which does not change the order; each target's sums are its own.
+        away = np.sum(own * own, axis=0) - 2.0 * np.einsum("km,kg->mg", wished, own)
+        drawn, each = 2 * DRAWN, DRAWN // PARTS
+        best = np.argmin(away[:, :drawn].reshape(len(T), 2 * PARTS, each), axis=2) + each * np.arange(2 * PARTS)
+        corners = drawn + np.argsort(away[:, drawn:], axis=1, kind="stable")[:, :CORNERS]
+        chosen = np.concatenate([best, corners], axis=1)
+        order = np.argsort(np.take_along_axis(away, chosen, axis=1), axis=1, kind="stable")[:, :count]
+        return np.asarray(np.take_along_axis(chosen, order, axis=1))
+
 
 def guesses(chain: Chain, limits: Array, size: float, seed: int) -> Guesses:
     """What to choose from within limits (n, 2) [rad | m]."""
