@@ -12,6 +12,7 @@ from benchmarks import (
     mobility,
     names,
     nearest,
+    one_call,
     pipes,
     plausibility,
     redundant,
@@ -21,6 +22,7 @@ from benchmarks import (
 
 BENCHMARKS = {
     "forward": forward.run,
+    "one-call": one_call.run,
     "pipes": pipes.run,
     "inverse": inverse.run,
     "flagged": flagged.run,

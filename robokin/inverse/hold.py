@@ -13,8 +13,9 @@ line), the rest is analysed as the special arm that it then is.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cache, partial
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.held_drive import drive_left
 from robokin.inverse.solution_names import branch_names
-from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution
+from robokin.inverse.solutions import Arc, BatchResult, Family, Question, Result, Solution, named_later
 from robokin.kernel.chain import row_standing
 from robokin.kernel.facts import fact
 from robokin.model import CoupledRobot, Robot
@@ -132,6 +133,11 @@ def with_held_joints(robot: Robot, arm: HeldArm, batch: BatchResult) -> BatchRes
     return replace(batch, q=q, within_limits=batch.within_limits & arm.inside, single=single, branches=branches)
 
 
+def whole_result(robot: Robot, arm: HeldArm, answer: Callable[[Question], Result], question: Question) -> Result:
+    """The answer of the part to a question as one of the robot: see `with_held_joints`."""
+    return _whole_result(arm, answer(question), robot if analysis_of(robot).redundancy == 0 else None)
+
+
 def own_near(arm: HeldArm, near: Array | None) -> Array | None:
     """The part's own of the wished values near: (n,) [rad | m]."""
     return None if near is None else arm.own(near)
@@ -178,10 +184,14 @@ def _held(robot: Robot, hold: dict[int, float]) -> HeldArm:
 def _whole_result(arm: HeldArm, result: Result, named: Robot | None) -> Result:
     """The answer for one target; `named` is the robot that its postures are named for, None for the part's names."""
     shown = [*result.solutions, *([result.nearest] if result.nearest is not None else [])]
-    names = [solution.branch for solution in shown]
-    if named is not None and shown:
-        names = _names(named, arm.whole(np.array([solution.q for solution in shown])))
-    whole = [_whole_solution(arm, solution, name) for solution, name in zip(shown, names, strict=True)]
+
+    @cache
+    def names() -> list[str]:
+        if named is None:
+            return [solution.branch for solution in shown]
+        return _names(named, arm.whole(np.array([solution.q for solution in shown])))
+
+    whole = [_whole_solution(arm, solution, partial(_of, names, k)) for k, solution in enumerate(shown)]
     solutions = tuple(whole[: len(result.solutions)])
     nearest = whole[-1] if result.nearest is not None else None
     families = tuple(_whole_family(arm, family) for family in result.families)
@@ -195,13 +205,17 @@ def _names(robot: Robot, q: Array) -> list[str]:
     return branch_names(robot, q)
 
 
-def _whole_solution(arm: HeldArm, solution: Solution, name: str) -> Solution:
-    return replace(
-        solution, q=arm.whole(solution.q), branch=name, within_limits=solution.within_limits and arm.inside,
-        free=arm.numbers(solution.free),
+def _whole_solution(arm: HeldArm, solution: Solution, name: Callable[[], str]) -> Solution:
+    return named_later(
+        name, arm.whole(solution.q), solution.within_limits and arm.inside, solution.position_error,
+        solution.angle_error, arm.numbers(solution.free),
     )  # fmt: skip
 
 
 def _whole_family(arm: HeldArm, family: Family) -> Family:
     arcs = tuple(Arc(arm.whole(arc.q), arc.whole) for arc in family.arcs)
     return replace(family, joints=arm.numbers(family.joints), arcs=arcs)
+
+
+def _of(names: Callable[[], list[str]], k: int) -> str:
+    return names()[k]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from robokin.inverse.self_motion.curve_crossings import crossings
 from robokin.inverse.self_motion.redundant import NOT_FOUND, seeds_of
 from robokin.inverse.self_motion.solution_sets import families
 from robokin.inverse.solution_names import branch_names
-from robokin.inverse.solutions import Arc, Family, Result, Solution
+from robokin.inverse.solutions import Arc, Family, Result, Solution, named_later
 from robokin.inverse.target_block import Request, TargetBlock, stands_for
 from robokin.inverse.verify import within_limits, wrapped
 from robokin.kinematics.forward import forward_kinematics
@@ -30,8 +31,9 @@ def result_of(request: Request, block: TargetBlock, i: int) -> Result:
     analysis, found = request.analysis, block.found
     rows = slice(np.searchsorted(found.index, i), np.searchsorted(found.index, i, side="right"))
     q, position, angle = found.q[rows], found.position[rows].tolist(), found.angle[rows].tolist()
-    names, inside, free = block.names[rows], block.inside[rows].tolist(), block.free[rows]
-    solutions = tuple(map(Solution, q, names, inside, position, angle, free))
+    first, inside, free = rows.start, block.inside[rows].tolist(), block.free[rows]
+    names = [partial(_name, block, int(first) + k) for k in range(len(q))]
+    solutions = tuple(map(named_later, names, q, inside, position, angle, free))
     method = "numeric" if request.method == "numeric" else analysis.method
     sets = families_of(request, block, i, q)
     complete = bool(block.claims.basis[i]) and not block.cut[i]
@@ -55,6 +57,10 @@ def result_of(request: Request, block: TargetBlock, i: int) -> Result:
         return Result(solutions, complete, method, **told)
     reason, nearest = why_not(request, block, i)
     return Result((), complete, method, reason, nearest, **told)
+
+
+def _name(block: TargetBlock, row: int) -> str:
+    return block.names[row]
 
 
 def families_of(request: Request, block: TargetBlock, i: int, q: Array) -> tuple[Family, ...]:

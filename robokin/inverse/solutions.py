@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from typing import SupportsIndex, overload
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 from robokin.arrays import Array, Flags, Index
 from robokin.brief import Answer, Brief
@@ -29,6 +29,34 @@ class Solution(Brief):
     position_error: float
     angle_error: float
     free: tuple[int, ...] = ()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields, for copies and pickles."""
+        return {part.name: getattr(self, part.name) for part in fields(self)}
+
+    if not TYPE_CHECKING:  # who reads the types knows the fields alone
+
+        def __getattr__(self, name: str) -> Any:
+            """The branch, where it is not worked out yet."""
+            known = self.__dict__
+            find = known.get("_name")
+            if find is not None and name == "branch":
+                known["branch"] = find()
+                known.pop("_name", None)
+            if name in known:  # found here, or meanwhile by another thread
+                return known[name]
+            raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'", name=name, obj=self)
+
+
+def named_later(
+    name: Callable[[], str], q: Array, within_limits: bool, position: float, angle: float, free: tuple[int, ...]
+) -> Solution:
+    """A solution whose branch is worked out when it is first asked for."""
+    one = object.__new__(Solution)
+    one.__dict__.update(
+        q=q, within_limits=within_limits, position_error=position, angle_error=angle, free=free, _name=name
+    )
+    return one
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -131,6 +159,33 @@ class Result(Answer):
             return f"<no solution: {self.reason}>"
         count = "1 solution" if len(self) == 1 else f"{len(self)} solutions"
         return f"<{count}, {'these are all' if self.complete else 'perhaps not all'}: {self.method}>"
+
+
+FIELDS = frozenset(part.name for part in fields(Result))
+"""What is asked of a result."""
+
+
+class UnmadeResult(Result):
+    """A result that is made when something of it is first asked for, and is a `Result` from then on."""
+
+    def __init__(self, make: Callable[[], Result]) -> None:
+        object.__setattr__(self, "_make", make)
+
+    def __getattribute__(self, name: str) -> Any:
+        """What is asked for, made before."""
+        if name in FIELDS or name == "__dict__":
+            known = object.__getattribute__(self, "__dict__")
+            make = known.get("_make")
+            if make is not None:
+                known.update(vars(make()))
+                object.__setattr__(self, "__class__", Result)
+                known.pop("_make", None)
+        return object.__getattribute__(self, name)
+
+    def __reduce_ex__(self, protocol: SupportsIndex) -> str | tuple[Any, ...]:
+        """As the `Result` that it is from now on."""
+        vars(self)
+        return Result.__reduce_ex__(self, protocol)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -15,9 +15,10 @@ from robokin.expected import expect_choice, expect_flag, expect_kind, expect_num
 from robokin.inverse.analysis import Task, analysis_of
 from robokin.inverse.coupled_joints import solve_coupled
 from robokin.inverse.full_turns import check_turns, with_full_turns, with_turn_counts
-from robokin.inverse.hold import check_held_limits, held_arm, own_near, with_held_joints
+from robokin.inverse.hold import check_held_limits, held_arm, own_near, whole_result, with_held_joints
+from robokin.inverse.one_target import one_target_arm, plain_pose, solve_one
 from robokin.inverse.single_answer import FAR, result_of
-from robokin.inverse.solutions import BatchResult, Question, Result
+from robokin.inverse.solutions import BatchResult, Question, Result, UnmadeResult
 from robokin.inverse.solve_blocks import BLOCK
 from robokin.inverse.target_block import Method, Request, TargetBlock
 from robokin.jobs.ordered_map import MOST_CORES, ordered_map
@@ -61,12 +62,56 @@ def solve_ik(
     linkages, J. Mech. Des. 115, 1993 (any other); A. P. Morgan and A. J. Sommese, Coefficient-parameter polynomial
     continuation, Appl. Math. Comput. 29, 1989 (that these are all).
     """
+    if turns is False and type(cores) is int and cores == 1:
+        one = _one_target(robot, T, limits, near, method, task, most, seed, hold)
+        if one is not None:
+            return one
     poses = target_poses(T)
     alone = poses.ndim == 2
     targets = poses.reshape(-1, 4, 4)
     batch = solve_many(robot, targets, limits, near, method, task, most, seed, turns, hold, alone, cores)
     batch = replace(batch, question=Question(robot, targets, task, bool(limits), dict(hold or {})))
-    return batch[0] if alone else batch
+    return UnmadeResult(partial(batch.__getitem__, 0)) if alone else batch
+
+
+def _one_target(
+    robot: Robot,
+    T: ArrayLike,
+    limits: bool,
+    near: ArrayLike | None,
+    method: Method,
+    task: Task,
+    most: int | None,
+    seed: int,
+    hold: Mapping[int, float] | None,
+) -> Result | None:
+    """The answer for one pose where it can be had without the blocks; None where not, and for what is no question."""
+    if not isinstance(robot, Robot) or type(limits) is not bool or not plain_pose(T):
+        return None
+    if type(method) is not str or method not in ("auto", "analytic") or type(task) is not str or task != "pose":
+        return None
+    if type(seed) is not int or seed < 0 or not (most is None or (type(most) is int and most >= 1)):
+        return None
+    if isinstance(robot, CoupledRobot) or not (hold is None or isinstance(hold, Mapping)):
+        return None
+    wish = _wished(robot, near)
+    part = None
+    if hold:
+        part = held_arm(robot, hold)
+        if limits:
+            check_held_limits(robot, part)
+        wish = own_near(part, wish)
+    arm = one_target_arm(robot if part is None else part.part)
+    if arm is None:
+        return None
+    target = np.array(T)
+    answer = solve_one(arm, target, limits, most, wish)
+    if answer is None:
+        return None
+    question = Question(robot, target, task, limits, dict(hold or {}))
+    if part is None:
+        return UnmadeResult(partial(answer.result, question))
+    return UnmadeResult(partial(whole_result, robot, part, answer.result, question))
 
 
 def solve_many(
@@ -157,7 +202,7 @@ def _wished(robot: Robot, near: ArrayLike | None) -> Array | None:
     """The joint values `near` (n,), checked."""
     if near is None:
         return None
-    near = expect_numbers(near, "near", f"{robot.n} joint values")
+    near = np.array(expect_numbers(near, "near", f"{robot.n} joint values"))
     if near.shape != (robot.n,):
         raise InputError(f"near has {near.size} values, expected {robot.n}: one for each joint of {robot.name}")
     if not np.all(np.isfinite(near)):

@@ -72,7 +72,7 @@ def solve_window(analysis: Analysis, T: Array, count: bool = True) -> tuple[Foun
         tried = np.bincount(candidates.index, minlength=len(T))
         doubt = Doubt(np.ones(len(T), dtype=bool), np.zeros(len(T), dtype=bool), tried)
         if count:
-            doubt.certain = _count(analysis, closing, found, imaginary) != analysis.number
+            doubt.certain = complex_count(analysis, closing, found, imaginary) != analysis.number
     else:
         candidates = solver.candidates(closing)
         found = verified(loop, six.chain, poses, closing, candidates)
@@ -88,7 +88,7 @@ def solve_window(analysis: Analysis, T: Array, count: bool = True) -> tuple[Foun
     return found, doubt
 
 
-def _count(analysis: Analysis, closing: Array, found: Found, imaginary: ComplexCandidates) -> Index:
+def complex_count(analysis: Analysis, closing: Array, found: Found, imaginary: ComplexCandidates) -> Index:
     """The distinct regular complex solutions (m,) of the loop among those found and the complex candidates."""
     six, loop = analysis.six, analysis.loop
     assert six is not None

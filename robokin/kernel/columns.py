@@ -22,6 +22,7 @@ from robokin.arrays import Array, Flags
 from robokin.kernel.entries import Entry, increased, plus, times, turned, turned_back
 
 Column = list[Entry]
+Entries = Sequence[Entry] | Array
 
 BLOCK = 4096
 """Frames in a block: its columns (32 kB each) stay in the second-level cache, and the interpreter's
@@ -112,6 +113,16 @@ class ChainProgram:
             values[i] += values[i - 1]
         all_turn = len(self.turning) == self.n
         cosines, sines = cos_sin_of_halves(values if all_turn else values[self.turning])
+        return self.walk(values, cosines, sines)
+
+    def walk(
+        self, values: Entries, cosines: Entries, sines: Entries
+    ) -> Iterator[tuple[Column, Column, Column, Column]]:
+        """The columns of each marked frame in turn, by slides' values (n) [m] and by cosines and sines of the turning.
+
+        Those of joints that turn about parallel axes are of the sums of their angles. Entries are arrays, or terms
+        of which `straight_line` makes code.
+        """
         rows = iter(range(len(self.turning)))
 
         x: Column = [1.0, 0.0, 0.0]

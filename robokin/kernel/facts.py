@@ -31,11 +31,14 @@ def fact(find: Callable[[Owner, *Rest], Found]) -> Callable[[Owner, *Rest], Foun
 
     @wraps(find)
     def known(owner: Owner, *rest: *Rest) -> Found:
-        facts = facts_of(owner)
-        key = find, rest
-        if key not in facts:
-            facts[key] = find(owner, *rest)
-        found: Found = facts[key]
+        found: Found
+        try:
+            found = owner.__dict__[NAME][find, rest]
+        except KeyError:
+            pass
+        else:
+            return found
+        found = facts_of(owner)[find, rest] = find(owner, *rest)
         return found
 
     return known

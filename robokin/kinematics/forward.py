@@ -15,9 +15,12 @@ from robokin.jobs.ordered_map import MOST_CORES, ordered_map
 from robokin.kernel.chain import chain_of
 from robokin.kernel.columns import BLOCK, ChainProgram, Constant
 from robokin.kernel.facts import fact
-from robokin.kernel.frames import frames, pose, run
+from robokin.kernel.frames import frames, pose, program_to_tool, run
+from robokin.kernel.straight_line import Straight, straight_frame
 from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.spatial import exact
+
+FLOATS = np.dtype(np.float64)
 
 SHARE = 8 * BLOCK
 """Configurations that a thread takes at once: for fewer it is not worth while to start one."""
@@ -33,8 +36,16 @@ def forward_kinematics(robot: Robot, q: ArrayLike, cores: int | None = 1) -> Arr
     J. Applied Mechanics 22, 1955; modified tables as J. J. Craig, Introduction to Robotics, 1986, has them.
     """
     q, moving = joint_motions(robot, q)
+    if type(cores) is not int or cores != 1:
+        cores = None if cores is None else expect_whole(cores, "cores", 1, MOST_CORES)
+    elif q.ndim == 1:
+        one = _one_pose(moving)
+        if one is not None:
+            try:
+                return one(q.tolist())
+            except ValueError:  # of an infinite angle: the batch has NaN for it
+                pass
     chain = chain_of(moving)
-    cores = None if cores is None else expect_whole(cores, "cores", 1, MOST_CORES)
     if cores == 1:
         return pose(chain, q)
     rows = q.reshape(math.prod(q.shape[:-1]), moving.n)
@@ -45,6 +56,12 @@ def forward_kinematics(robot: Robot, q: ArrayLike, cores: int | None = 1) -> Arr
 
     deque(ordered_map(fill, range(0, len(rows), SHARE), cores, workers="threads"), maxlen=0)
     return T.reshape(*q.shape[:-1], 4, 4)
+
+
+@fact
+def _one_pose(robot: Robot) -> Straight | None:
+    """The tool's pose (4, 4) [m] at one configuration, if there is code for the robot."""
+    return straight_frame(program_to_tool(chain_of(robot)))
 
 
 def link_frames(robot: Robot, q: ArrayLike) -> Array:
@@ -95,6 +112,8 @@ def joint_motions(robot: Robot, q: ArrayLike) -> tuple[Array, Robot]:
 
 def joint_values(robot: Robot, q: ArrayLike) -> Array:
     """q as an array (..., n) of floats; InputError when it is not one, or `robot` no robot."""
+    if type(q) is np.ndarray and q.dtype == FLOATS and isinstance(robot, Robot) and q.shape[-1:] == (robot.n,):
+        return q
     robot = expect_robot(robot)
     q = expect_numbers(q, "q", "joint values: numbers in an array (..., n)")
     if q.ndim == 0 or q.shape[-1] != robot.n:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
 from robokin.expected import expect_choice
 from robokin.kernel.chain import chain_of
+from robokin.kernel.facts import fact
+from robokin.kernel.frames import program_to_joints
 from robokin.kernel.geometric_jacobian import jacobian as chain_jacobian
+from robokin.kernel.straight_line import Straight, straight_jacobian
 from robokin.kinematics.forward import joint_motions
 from robokin.model import CoupledRobot, Robot
 
@@ -23,7 +27,33 @@ def jacobian(robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base"
     Raises InputError when q has another length than n, and for another frame.
     Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, eq. (3.30).
     """
-    expect_choice(frame, ("base", "tool"), "frame")
+    if type(frame) is not str or frame != "base":
+        expect_choice(frame, ("base", "tool"), "frame")
     q, moving = joint_motions(robot, q)
-    J = chain_jacobian(chain_of(moving), q, frame)
+    J = _at_one(moving, q, frame) if q.ndim == 1 else None
+    if J is None:
+        J = chain_jacobian(chain_of(moving), q, frame)
     return J @ robot.drive.S if isinstance(robot, CoupledRobot) else J
+
+
+def _at_one(robot: Robot, q: Array, frame: str) -> Array | None:
+    """J (6, n) at one configuration, if there is code for the robot and all angles are finite."""
+    one = _straight(robot, frame)
+    if one is None:
+        return None
+    try:
+        columns = one(q.tolist())
+    except ValueError:
+        return None
+    if frame == "base":
+        return columns.T
+    turned = np.empty((robot.n, 6))
+    R = columns[robot.n :].reshape(12)[:9].reshape(3, 3)
+    for part in (slice(3), slice(3, 6)):
+        np.matmul(columns[: robot.n, part], R, out=turned[:, part])
+    return turned.T
+
+
+@fact
+def _straight(robot: Robot, frame: str) -> Straight | None:
+    return straight_jacobian(program_to_joints(chain_of(robot)), frame == "tool")

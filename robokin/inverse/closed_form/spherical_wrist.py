@@ -166,8 +166,8 @@ class SphericalTriple:
                 target = backwards_closing(target)
             B, D = self.B or target, self.D or target
             index = np.arange(len(closing))
-            g = self._point(D)
-            equations = self._equations(B, g)
+            g = self.point(D)
+            equations = self.equations(B, g)
             marks = Marks(len(closing))
             q_c, real, loose = self._third(equations)
             found = self._from_third(B, D, g, equations, q_c, real, index, marks)
@@ -179,11 +179,11 @@ class SphericalTriple:
             fan = self.c.fan
             every = np.ones(np.shape(fan[0]), dtype=bool)
             B, D = taken(B, index), taken(D, index)
-            g = self._point(D)
-            more = self._from_third(B, D, g, self._equations(B, g), fan, every, index, marks)
+            g = self.point(D)
+            more = self._from_third(B, D, g, self.equations(B, g), fan, every, index, marks)
             return marks.on(joined(found, more), True)
 
-    def _point(self, D: EntryFrame) -> Vector:
+    def point(self, D: EntryFrame) -> Vector:
         """g."""
         return moved_back(D, [0.0, 0.0, self.far])
 
@@ -235,7 +235,7 @@ class SphericalTriple:
         order = [5 - j for j in self.joints] if self.reversed else list(self.joints)
         return gathered(index, dict(zip(order, values, strict=True)), real[None] & in_front(reached, real))
 
-    def _equations(self, B: EntryFrame, g: Vector) -> Equations:
+    def equations(self, B: EntryFrame, g: Vector) -> Equations:
         """v, |v|² and e, the two equations less what they have in y_z and |y|² (y_xy if b slides), of q_c."""
         c = self.c
         carried = c.carried(self.u)
@@ -305,19 +305,22 @@ class SphericalTriple:
             n = parallel_gradient([linear, *(f for _, f, _ in products)])
             if n is not None:
                 # All depend on ℓ = n · (cos, sin) alone: a quadratic in ℓ, then ℓ's two angles.
-                f = _sum_of_products(Prismatic, [(k, _along(f, n), _along(g, n)) for k, f, g in products])
-                k = combined((1.0, 1.0), (f, _along(linear, n)))
+                f = sum_of_products(
+                    Prismatic, [(k, along_gradient(f, n), along_gradient(g, n)) for k, f, g in products]
+                )
+                k = combined((1.0, 1.0), (f, along_gradient(linear, n)))
                 ell, real = quadratic_roots(k[2], k[1], k[0])
                 turn, reached = linear_roots(*n, ell)
                 return turn, real & reached, loose(k)
-        f = combined((1.0, 1.0), (_sum_of_products(self.c, products), linear))
+        f = combined((1.0, 1.0), (sum_of_products(self.c, products), linear))
         return *self.c.roots(f), loose(f)
 
 
-def _sum_of_products(c: type[Revolute] | type[Prismatic], products: list[tuple[float, Form, Form]]) -> Form:
+def sum_of_products(c: type[Revolute] | type[Prismatic], products: list[tuple[float, Form, Form]]) -> Form:
+    """Σ k f g."""
     return combined([k for k, _, _ in products], [c.product(f, g) for _, f, g in products])
 
 
-def _along(f: Form, n: tuple[float, float]) -> Form:
+def along_gradient(f: Form, n: tuple[float, float]) -> Form:
     """A function of n · (cos, sin) as a polynomial in it."""
     return [f[0], dot(n, f[1:3])]

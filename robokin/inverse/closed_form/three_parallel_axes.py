@@ -183,7 +183,7 @@ class ThreeParallel:
             marks = Marks(len(closing))
             if not self.rank:
                 return marks.on(self._sliding(A, D, index, marks))
-            f = self._equations(A, D)
+            f = self.equations(A, D)
             q_a, real, loose = self._first(f)
             found = self._from_first(A, D, f, q_a, real, index, marks)
             if loose is None:
@@ -193,14 +193,14 @@ class ThreeParallel:
             index = index[np.broadcast_to(loose, index.shape)]
             real = np.ones((len(FAN), 1), dtype=bool)
             A, D = taken(A, index), taken(D, index)
-            more = self._from_first(A, D, self._equations(A, D), Revolute.fan, real, index, marks)
+            more = self._from_first(A, D, self.equations(A, D), Revolute.fan, real, index, marks)
             return marks.on(joined(found, more))
 
     def _offset(self, D: EntryFrame) -> Entry:
         """What the height has of no joint."""
         return plus(plus(D.t[2], dot(self.u, self.C.t)), self.sign * self.eta)
 
-    def _equations(self, A: EntryFrame, D: EntryFrame) -> list[Form]:
+    def equations(self, A: EntryFrame, D: EntryFrame) -> list[Form]:
         """f(q_a), case 1: direction and height less what they have of cos q_c and sin q_c."""
         h, u, beta = D.R[2], self.u, self.beta
         return [
@@ -328,7 +328,7 @@ class ThreeParallel:
         self, A: EntryFrame, D: EntryFrame, positions: Sequence[Motion], real: Flags, index: Index
     ) -> Candidates:
         """The candidates for given positions of a, b and c."""
-        p, across = self._seen_from_first(A, D, positions)
+        p, across = self.seen_from_first(A, D, positions)
         turn, reached = self._elbow(p)
         l1, l2 = self.l1, self.l2
         cos2, sin2 = (in_front(np.asarray(part), real) for part in turn)
@@ -344,7 +344,7 @@ class ThreeParallel:
         order = [5 - j for j in self.joints] if self.reversed else list(self.joints)
         return gathered(index, dict(zip(order, values, strict=True)), real[None] & in_front(reached, real))
 
-    def _seen_from_first(self, A: EntryFrame, D: EntryFrame, positions: Sequence[Motion]) -> tuple[Vector, Vector]:
+    def seen_from_first(self, A: EntryFrame, D: EntryFrame, positions: Sequence[Motion]) -> tuple[Vector, Vector]:
         """x and y of S's origin and of its x axis: those of C⁻¹ J_c⁻¹ B⁻¹ J_b⁻¹ A⁻¹ J_a⁻¹ D⁻¹."""
         p: Vector = moved_back(D, [0.0, 0.0, 0.0])
         x: Vector = D.R[0]
@@ -367,7 +367,7 @@ class ThreeParallel:
             return [turn if j == self.free else position for j, position in enumerate(positions)]
 
         def point(turn: Turn) -> Array:
-            x, y = self._seen_from_first(A, D, with_turn(turn))[0]
+            x, y = self.seen_from_first(A, D, with_turn(turn))[0]
             return np.asarray(x + 1j * np.asarray(y))
 
         start, quarter, half = point((1.0, 0.0)), point((0.0, 1.0)), point((-1.0, 0.0))

@@ -56,15 +56,15 @@ from robokin.kernel.entries import (
 def two_turns(P: Matrix, s: Vector, w: Vector) -> tuple[Turn, Turn, Flags]:
     """The turns α and β with Rz(α) P Rz(β) s = w as (cos, sin), each (2, …), and whether they are real: (1, …)."""
     p = P[2]
-    a, b = _lever(p, s)
+    a, b = lever_of(p, s)
     A = root(plus(times(a, a), times(b, b)))
     middle = times(p[2], s[2])
     square = plus(times(w[0], w[0]), times(w[1], w[1]))
     w_z = np.asarray(w[2])
     small, great = square / (1.0 + np.abs(w_z)), 1.0 + np.abs(w_z)
     up = w_z > 0.0
-    near = plus(_zeroed(middle + A - 1.0), np.where(up, small, great))
-    far = plus(_zeroed(A - middle - 1.0), np.where(up, great, small))
+    near = plus(zeroed(middle + A - 1.0), np.where(up, small, great))
+    far = plus(zeroed(A - middle - 1.0), np.where(up, great, small))
     real = np.asarray(np.minimum(near, far) >= -CLAMP)
     near, far = np.maximum(near, 0.0), np.maximum(far, 0.0)
     # Scaled by A: beyond the boundary, where one of the two was negative, cosine and sine need it anyway.
@@ -115,7 +115,7 @@ def _right_angled(P: Matrix, Q: Matrix, R: Matrix) -> tuple[Array, Array, Array,
     """Three turns where both solutions are q1, φ + θ, q3 and q1 + π, φ - θ, q3 + π."""
     s = [row[2] for row in Q]
     x, y, z = (row[2] for row in R)
-    a, b = _lever(P[2], s)
+    a, b = lever_of(P[2], s)
     phi = float(angle(a, b))
     theta = np.arctan2(np.sqrt(x * x + y * y), z)
     # The direction of (P Rz(β) s)_xy, which is sin(β - φ) times this.
@@ -137,11 +137,11 @@ def _third(Q: Matrix, R: Matrix, axis: Vector) -> Entry:
     return angle(plus(times(k_x, x), times(k_y, y)), minus(times(x, k_y), times(k_x, y)))
 
 
-def _lever(p: Vector, s: Vector) -> Turn:
+def lever_of(p: Vector, s: Vector) -> Turn:
     """A (cos φ, sin φ)."""
     return plus(times(p[0], s[0]), times(p[1], s[1])), minus(times(p[1], s[0]), times(p[0], s[1]))
 
 
-def _zeroed(value: Entry) -> Entry:
+def zeroed(value: Entry) -> Entry:
     """A constant that is 0 but for the rounding of two products."""
     return 0.0 if isinstance(value, float) and abs(value) < 2.0 * NOTHING else value

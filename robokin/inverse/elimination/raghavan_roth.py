@@ -33,6 +33,7 @@ and Automation 10(5), 1994. That A(XY) = A(X) A(Y), which spares all symbols, an
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -107,6 +108,7 @@ class Elimination:
         self._left_alone = fourteen_functions.invariants(turns[5], turns[3])
         self._products = np.kron(*(_HALF if turns[i] else np.eye(3) for i in (1, 2)))
         self._shift, self._zero = shift, np.eye(4)
+        self._parts: dict[str, Array] = {}
         if turns[0]:
             self._zero[:2, :2] = [[np.cos(shift), -np.sin(shift)], [np.sin(shift), np.cos(shift)]]
         # The rows' degrees hold for all targets, reachable or not; two random ones show them.
@@ -169,18 +171,40 @@ class Elimination:
     def _equations(self, M: list[Array]) -> tuple[Array, Complex, Array]:
         """E on 1, cos, sin or 1, d, d² of joint 0 (b, 3, 6, 9), what of it turns (b, 6, 4), and M4⁻¹ J4⁻¹ M3⁻¹
         on those of joint 4 (b, 15, 3). b is 1 for all that does not depend on the target."""
-        free = self._free_turns
-        start = fourteen_functions.start(free)[:, None]
-        F = _times_joint(self._forth[2], fourteen_functions.action(M[2], free) @ start)
-        F = _times_joint(self._forth[1], fourteen_functions.action(M[1], free) @ F)
-        F = fourteen_functions.action(self._zero @ M[0], free) @ F @ self._products
-        V = _times_joint(self._back[4], fourteen_functions.action(invert(M[3]), free) @ start)
-        V = fourteen_functions.action(invert(M[4]), free) @ V
-        G = _times_joint(self._back[5], V)[:, 1:]
-        N = np.swapaxes(np.linalg.qr(G[..., 1:], mode="complete")[0][..., 8:], -1, -2)
-        N = np.concatenate([-N @ G[..., :1], N], axis=-1) @ fourteen_functions.action(M[5], free)
+        F = self._once("ahead", (0, 1, 2), lambda: self._ahead(M))
+        V = self._once("behind", (3, 4), lambda: self._behind(M))
+        N = self._once("free of the last", (3, 4), lambda: self._free_of_last(V)) @ fourteen_functions.action(
+            M[5], self._free_turns
+        )
         E = (N[:, None] @ self._forth[0]) @ F[:, None]
         return E, N[..., X_PARTS] + 1j * N[..., X_PARTS + 1], V
+
+    def _once(self, name: str, places: tuple[int, ...], part: Callable[[], Array]) -> Array:
+        """A part of the equations, which is kept where none of the links in these places depends on the target."""
+        if any(self._links[i] is None for i in places):
+            return part()
+        if name not in self._parts:
+            self._parts[name] = part()
+        return self._parts[name]
+
+    def _ahead(self, M: list[Array]) -> Array:
+        """The functions of what joints 1 and 2 and M0, M1 and M2 do, on their products (b, 15, 9)."""
+        free = self._free_turns
+        F = fourteen_functions.action(M[2], free) @ fourteen_functions.start(free)[:, None]
+        F = fourteen_functions.action(M[1], free) @ _times_joint(self._forth[2], F)
+        return fourteen_functions.action(self._zero @ M[0], free) @ _times_joint(self._forth[1], F) @ self._products
+
+    def _behind(self, M: list[Array]) -> Array:
+        """M4⁻¹ J4⁻¹ M3⁻¹ on the functions of joint 4 (b, 15, 3)."""
+        free = self._free_turns
+        V = fourteen_functions.action(invert(M[3]), free) @ fourteen_functions.start(free)[:, None]
+        return fourteen_functions.action(invert(M[4]), free) @ _times_joint(self._back[4], V)
+
+    def _free_of_last(self, V: Array) -> Array:
+        """Six combinations (b, 6, 15) of the functions that are free of joints 4 and 5."""
+        G = _times_joint(self._back[5], V)[:, 1:]
+        N = np.swapaxes(np.linalg.qr(G[..., 1:], mode="complete")[0][..., 8:], -1, -2)
+        return np.concatenate([-N @ G[..., :1], N], axis=-1)
 
     def _joint_values(self, M: list[Array], V: Array, index: Index, x: Array, v: Array) -> Array:
         """The values (6, s) of all joints for roots x (s,) and products v (s, 12)."""
