@@ -20,7 +20,7 @@ help:            ## what can be made
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
 
 # What a user needs; what developers need beside it; what releases need beside that.
-$(VENV)/user: .ci/requirements/user.txt .ci/requirements/build.txt pyproject.toml
+$(VENV)/user: .ci/requirements/user.txt .ci/requirements/build.txt pyproject.toml hatch_build.py $(wildcard robokin/kernel/native/*)
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/$(LOCKED) -r .ci/requirements/user.txt -r .ci/requirements/build.txt
 	$(BIN)/$(HERE)

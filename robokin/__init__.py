@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from robokin.inverse.joint_paths import interpolate_joints as interpolate_joints
     from robokin.inverse.solve import solve_ik as solve_ik
     from robokin.inverse.tip_targets import solve_tips as solve_tips
+    from robokin.kernel.native_kernel import kernel_in_use as kernel_in_use
     from robokin.kinematics.dh_table import to_convention as to_convention
     from robokin.kinematics.forward import forward_kinematics as forward_kinematics
     from robokin.kinematics.forward import link_frames as link_frames
@@ -79,6 +80,7 @@ _HOMES = {
     "forward_kinematics": "robokin.kinematics.forward",
     "link_frames": "robokin.kinematics.forward",
     "to_convention": "robokin.kinematics.dh_table",
+    "kernel_in_use": "robokin.kernel.native_kernel",
     "solve_ik": "robokin.inverse.solve",
     "solve_tips": "robokin.inverse.tip_targets",
     "jacobian": "robokin.kinematics.jacobian",

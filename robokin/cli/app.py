@@ -171,7 +171,9 @@ app = typer.Typer(
 
 def _version(value: bool) -> None:
     if value:
-        print(f"robokin {__version__}")
+        from robokin import kernel_in_use
+
+        print(f"robokin {__version__} ({kernel_in_use} kernel)")
         raise typer.Exit
 
 

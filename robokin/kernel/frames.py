@@ -13,6 +13,7 @@ from robokin.arrays import Array
 from robokin.kernel.chain import Chain
 from robokin.kernel.columns import BLOCK, ChainProgram, Constant
 from robokin.kernel.facts import fact
+from robokin.kernel.native_kernel import handle, native
 
 
 @fact
@@ -33,12 +34,14 @@ def frames(chain: Chain, q: Array) -> Array:
 
     q: (..., n) [rad | m]. Returns (..., n + 1, 4, 4) [m].
     """
-    return run(program_to_joints(chain), q)
+    known = handle(chain)
+    return run(program_to_joints(chain), q) if native is None or known is None else native.frames(known, q)
 
 
 def pose(chain: Chain, q: Array) -> Array:
     """The tool's frame (..., 4, 4) [m] at q: (..., n) [rad | m]."""
-    return run(program_to_tool(chain), q)[..., 0, :, :]
+    known = handle(chain)
+    return run(program_to_tool(chain), q)[..., 0, :, :] if native is None or known is None else native.pose(known, q)
 
 
 def run(program: ChainProgram, q: Array) -> Array:

@@ -14,6 +14,7 @@ import numpy as np
 from robokin.arrays import Array, Flags
 from robokin.kernel.chain import Chain
 from robokin.kernel.frames import frames, program_to_joints
+from robokin.kernel.native_kernel import handle, native
 
 BLOCK = 2048
 """Configurations at a time: their columns stay in the second-level cache."""
@@ -27,7 +28,11 @@ def jacobian(chain: Chain, q: Array, frame: Literal["base", "tool"] = "base", si
 
     size: the unit of length [m], of prismatic joints as well; the twist is that of the tool's origin.
     """
-    return jacobian_of(frames(chain, q), chain.revolute, frame, size)
+    known = handle(chain)
+    if native is None or known is None:
+        return jacobian_of(frames(chain, q), chain.revolute, frame, size)
+    J: Array = native.jacobian(known, q, size, frame == "tool")
+    return J
 
 
 def jacobian_of(F: Array, revolute: Flags, frame: Literal["base", "tool"] = "base", size: float = 1.0) -> Array:

@@ -20,6 +20,7 @@ from robokin.kernel.columns import BLOCK
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import program_to_tool
 from robokin.kernel.geometric_jacobian import CROSS
+from robokin.kernel.native_kernel import handle, native
 from robokin.kernel.sweep import sweep
 
 FEW = 80
@@ -55,6 +56,15 @@ def error_and_jacobian(chain: Chain, T: Array, q: Array, size: float) -> tuple[A
         before = q.shape[:-1]
         e, J = error_and_jacobian(chain, T.reshape(-1, 4, 4), q.reshape(-1, chain.n), size)
         return e.reshape(*before, 6), J.reshape(*before, 6, chain.n)
+    known = handle(chain)
+    if native is not None and known is not None:
+        both: tuple[Array, Array] = native.errors(known, T, q, size)
+        return both
+    return errors_by_columns(chain, T, q, size)
+
+
+def errors_by_columns(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Array]:
+    """`error_and_jacobian` for q (s, n) and T (s, 4, 4), in Python."""
     if len(q) <= FEW:
         return _of_few(chain, T, q, size)
     starts = range(0, len(q), TOGETHER)

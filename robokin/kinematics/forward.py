@@ -16,6 +16,7 @@ from robokin.kernel.chain import chain_of
 from robokin.kernel.columns import BLOCK, ChainProgram, Constant
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import frames, pose, program_to_tool, run
+from robokin.kernel.native_kernel import native
 from robokin.kernel.straight_line import Straight, straight_frame
 from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.spatial import exact
@@ -38,7 +39,7 @@ def forward_kinematics(robot: Robot, q: ArrayLike, cores: int | None = 1) -> Arr
     q, moving = joint_motions(robot, q)
     if type(cores) is not int or cores != 1:
         cores = None if cores is None else expect_whole(cores, "cores", 1, MOST_CORES)
-    elif q.ndim == 1:
+    elif native is None and q.ndim == 1:
         one = _one_pose(moving)
         if one is not None:
             try:

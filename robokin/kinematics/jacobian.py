@@ -13,6 +13,7 @@ from robokin.kernel.chain import chain_of
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import program_to_joints
 from robokin.kernel.geometric_jacobian import jacobian as chain_jacobian
+from robokin.kernel.native_kernel import native
 from robokin.kernel.straight_line import Straight, straight_jacobian
 from robokin.kinematics.forward import joint_motions
 from robokin.model import CoupledRobot, Robot
@@ -30,7 +31,7 @@ def jacobian(robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base"
     if type(frame) is not str or frame != "base":
         expect_choice(frame, ("base", "tool"), "frame")
     q, moving = joint_motions(robot, q)
-    J = _at_one(moving, q, frame) if q.ndim == 1 else None
+    J = _at_one(moving, q, frame) if native is None and q.ndim == 1 else None
     if J is None:
         J = chain_jacobian(chain_of(moving), q, frame)
     return J @ robot.drive.S if isinstance(robot, CoupledRobot) else J

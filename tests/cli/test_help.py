@@ -29,7 +29,7 @@ def test_the_overview_names_every_command(call):
 
 
 def test_the_version(call):
-    assert call("--version").text == f"robokin {robokin.__version__}\n"
+    assert call("--version").text == f"robokin {robokin.__version__} ({robokin.kernel_in_use} kernel)\n"
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -77,7 +77,7 @@ def test_the_examples_run(call, command, tmp_path, monkeypatch):
 
 def test_the_module_is_a_program_too(run):
     done = subprocess.run([PROGRAM[0], "-m", "robokin", "--version"], capture_output=True, text=True, check=True)
-    assert done.stdout == f"robokin {robokin.__version__}\n"
+    assert done.stdout == f"robokin {robokin.__version__} ({robokin.kernel_in_use} kernel)\n"
 
 
 def completed(words, **more):

@@ -1,0 +1,316 @@
+/* Chains followed for LANES configurations at a time, in plain C that compilers turn into vector instructions.
+
+   This file is compiled once for every machine and once for those with AVX2; LANES_NAME gives the functions of each
+   their names. Products and sums are rounded one by one (-ffp-contract=off), so that both give the same digits, and
+   one configuration the same as many.
+
+   Sines and cosines: pi/2 is taken off in three parts (Cody and Waite), and on [-pi/4, pi/4] stand the polynomials of
+   fdlibm's __kernel_sin and __kernel_cos (Sun Microsystems, 1993, freely distributable); to within 0.8 units in the
+   last place for |x| <= 1e5. Beyond that, and for what is no number, the C library is asked.
+*/
+
+#include "chain.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#define LANES 8
+#define FARTHEST 1e5
+
+#define CONCAT_(a, b) a##b
+#define CONCAT(a, b) CONCAT_(a, b)
+#define NAMED(name) CONCAT(name, LANES_NAME)
+
+/* The nearest whole number to |x| < 2^51 is what is left when this is added and taken off again. */
+static const double SHIFT = 6755399441055744.0;
+static const double TWO_OVER_PI = 0.63661977236758138;
+static const double PART_1 = 1.57079632673412561417e+00, PART_2 = 6.07710050630396597660e-11,
+                    PART_3 = 2.02226624879595063154e-21;
+
+static inline void sine_cosine(double x, double *sine, double *cosine) {
+    double k = (x * TWO_OVER_PI + SHIFT) - SHIFT;
+    double high = x - k * PART_1, low = k * PART_2;
+    double r = high - low;
+    /* What that difference rounds away, and the third part. */
+    double tail = (high - r) - low - k * PART_3;
+    double z = r * r;
+    double ps = 8.33333333332248946124e-03 +
+                z * (-1.98412698298579493134e-04 +
+                     z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
+    double v = z * r;
+    double s = r - ((z * (0.5 * tail - v * ps) - tail) - v * -1.66666666666666324348e-01);
+    double pc = z * (4.16666666666666019037e-02 +
+                     z * (-1.38888888888741095749e-03 +
+                          z * (2.48015872894767294178e-05 +
+                               z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
+    double half = 0.5 * z, w = 1.0 - half;
+    double c = w + (((1.0 - w) - half) + (z * pc - r * tail));
+    /* k modulo 4 without integers: 4 (k/4 - floor(k/4)) by the same shift, to -2 … 2. */
+    double quarter = k - 4.0 * ((k * 0.25 + SHIFT) - SHIFT);
+    double odd = quarter * quarter;          /* 0, 1, 4: odd quarters exchange sine and cosine */
+    double swap = odd == 1.0 ? 1.0 : 0.0;
+    double a = swap != 0.0 ? c : s, b = swap != 0.0 ? s : c;
+    double minus_sine = quarter == -1.0 || odd == 4.0 ? -1.0 : 1.0;
+    double minus_cosine = quarter == 1.0 || odd == 4.0 ? -1.0 : 1.0;
+    *sine = minus_sine * a;
+    *cosine = minus_cosine * b;
+}
+
+/* The frame x, y, z, p of LANES configurations: entry r of column c is at [3 c + r]. */
+typedef struct {
+    double v[12][LANES];
+} Frame;
+
+static void start(const Chain *chain, Frame *F) {
+    for (int j = 0; j < 12; j++)
+        for (int l = 0; l < LANES; l++)
+            F->v[j][l] = chain->first[j];
+}
+
+static void turn(Frame *F, const double *c, const double *s) {
+    for (int r = 0; r < 3; r++)
+        for (int l = 0; l < LANES; l++) {
+            double x = F->v[r][l], y = F->v[3 + r][l];
+            F->v[r][l] = c[l] * x + s[l] * y;
+            F->v[3 + r][l] = c[l] * y - s[l] * x;
+        }
+}
+
+static void slide(Frame *F, const double *q) {
+    for (int r = 0; r < 3; r++)
+        for (int l = 0; l < LANES; l++)
+            F->v[9 + r][l] += q[l] * F->v[6 + r][l];
+}
+
+/* F C, leaving out what zeros of C spare. */
+static void go_on(Frame *F, const Constant *C) {
+    Frame G;
+    if (C->shifts)
+        for (int j = 0; j < 3; j++)
+            if (C->m[9 + j] != 0.0)
+                for (int r = 0; r < 3; r++)
+                    for (int l = 0; l < LANES; l++)
+                        F->v[9 + r][l] += C->m[9 + j] * F->v[3 * j + r][l];
+    if (!C->turns)
+        return;
+    for (int c = 0; c < 3; c++)
+        for (int r = 0; r < 3; r++) {
+            double *out = G.v[3 * c + r];
+            int begun = 0;
+            for (int j = 0; j < 3; j++) {
+                double m = C->m[3 * c + j];
+                const double *in = F->v[3 * j + r];
+                if (m == 0.0)
+                    continue;
+                if (!begun)
+                    for (int l = 0; l < LANES; l++)
+                        out[l] = m * in[l];
+                else
+                    for (int l = 0; l < LANES; l++)
+                        out[l] += m * in[l];
+                begun = 1;
+            }
+            if (!begun)
+                for (int l = 0; l < LANES; l++)
+                    out[l] = 0.0;
+        }
+    for (int j = 0; j < 9; j++)
+        for (int l = 0; l < LANES; l++)
+            F->v[j][l] = G.v[j][l];
+}
+
+/* q (n, LANES) to sines and cosines of the turning joints; slides keep their values in `s`. */
+static void prepared(const Chain *chain, const double *q, ptrdiff_t count, double s[][LANES], double c[][LANES]) {
+    for (int i = 0; i < chain->n; i++) {
+        int far = 0;
+        for (int l = 0; l < LANES; l++) {
+            ptrdiff_t row = l < count ? l : count - 1;
+            s[i][l] = q[row * chain->n + i] + chain->offsets[i];
+        }
+        if (!chain->revolute[i])
+            continue;
+        for (int l = 0; l < LANES; l++)
+            far |= !(fabs(s[i][l]) <= FARTHEST);
+        if (far)
+            for (int l = 0; l < LANES; l++) {
+                double x = s[i][l];
+                if (fabs(x) <= FARTHEST) {
+                    sine_cosine(x, &s[i][l], &c[i][l]);
+                } else {
+                    s[i][l] = sin(x);
+                    c[i][l] = cos(x);
+                }
+            }
+        else
+            for (int l = 0; l < LANES; l++) {
+                double sine, cosine;
+                sine_cosine(s[i][l], &sine, &cosine);
+                s[i][l] = sine;
+                c[i][l] = cosine;
+            }
+    }
+}
+
+static void put(const Frame *F, double *out, ptrdiff_t step, ptrdiff_t count) {
+    for (ptrdiff_t l = 0; l < count; l++, out += step) {
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 4; c++)
+                out[4 * r + c] = F->v[3 * c + r][l];
+        out[12] = out[13] = out[14] = 0.0;
+        out[15] = 1.0;
+    }
+}
+
+static void moved(const Chain *chain, int i, Frame *F, double s[][LANES], double c[][LANES]) {
+    if (chain->revolute[i])
+        turn(F, c[i], s[i]);
+    else
+        slide(F, s[i]);
+    go_on(F, &chain->links[i]);
+}
+
+/* Poses of the tool (m, 4, 4) at q (m, n). */
+void NAMED(poses)(const Chain *chain, const double *q, ptrdiff_t m, double *out) {
+    double s[MOST_JOINTS][LANES], c[MOST_JOINTS][LANES];
+    Frame F;
+    for (ptrdiff_t first = 0; first < m; first += LANES) {
+        ptrdiff_t count = m - first < LANES ? m - first : LANES;
+        prepared(chain, q + first * chain->n, count, s, c);
+        start(chain, &F);
+        for (int i = 0; i < chain->n; i++)
+            moved(chain, i, &F, s, c);
+        put(&F, out + 16 * first, 16, count);
+    }
+}
+
+/* The frames (m, n + 1, 4, 4) that joints start from, and the tool's, at q (m, n). */
+void NAMED(frames)(const Chain *chain, const double *q, ptrdiff_t m, double *out) {
+    double s[MOST_JOINTS][LANES], c[MOST_JOINTS][LANES];
+    Frame F;
+    ptrdiff_t step = 16 * (chain->n + 1);
+    for (ptrdiff_t first = 0; first < m; first += LANES) {
+        ptrdiff_t count = m - first < LANES ? m - first : LANES;
+        prepared(chain, q + first * chain->n, count, s, c);
+        start(chain, &F);
+        for (int i = 0; i < chain->n; i++) {
+            put(&F, out + step * first + 16 * i, step, count);
+            moved(chain, i, &F, s, c);
+        }
+        put(&F, out + step * first + 16 * chain->n, step, count);
+    }
+}
+
+/* Axes z and o of the joints (n, 6, LANES) and the tool's frame. */
+static void followed(const Chain *chain, const double *q, ptrdiff_t count, double axes[][6][LANES], Frame *F) {
+    double s[MOST_JOINTS][LANES], c[MOST_JOINTS][LANES];
+    prepared(chain, q, count, s, c);
+    start(chain, F);
+    for (int i = 0; i < chain->n; i++) {
+        for (int j = 0; j < 6; j++)
+            for (int l = 0; l < LANES; l++)
+                axes[i][j][l] = F->v[6 + j][l];
+        moved(chain, i, F, s, c);
+    }
+}
+
+/* Column i of the Jacobian (6, LANES): (z x (p - o) / size, z), or (z, 0) of a slide. */
+static void column(const Chain *chain, int i, double axis[6][LANES], const Frame *F, double size, double J[6][LANES]) {
+    if (!chain->revolute[i]) {
+        for (int r = 0; r < 3; r++)
+            for (int l = 0; l < LANES; l++) {
+                J[r][l] = axis[r][l];
+                J[3 + r][l] = 0.0;
+            }
+        return;
+    }
+    double lever[3][LANES];
+    for (int r = 0; r < 3; r++)
+        for (int l = 0; l < LANES; l++)
+            lever[r][l] = (F->v[9 + r][l] - axis[3 + r][l]) / size;
+    for (int r = 0; r < 3; r++) {
+        int a = (r + 1) % 3, b = (r + 2) % 3;
+        for (int l = 0; l < LANES; l++) {
+            J[r][l] = axis[a][l] * lever[b][l] - axis[b][l] * lever[a][l];
+            J[3 + r][l] = axis[r][l];
+        }
+    }
+}
+
+/* Jacobians (m, 6, n) at q (m, n), in the axes of the base or, if `tool`, of the tool. */
+void NAMED(jacobians)(const Chain *chain, const double *q, ptrdiff_t m, double size, int tool, double *out) {
+    double axes[MOST_JOINTS][6][LANES], J[6][LANES], R[6][LANES];
+    Frame F;
+    int n = chain->n;
+    for (ptrdiff_t first = 0; first < m; first += LANES) {
+        ptrdiff_t count = m - first < LANES ? m - first : LANES;
+        followed(chain, q + first * n, count, axes, &F);
+        for (int i = 0; i < n; i++) {
+            column(chain, i, axes[i], &F, size, J);
+            if (tool) {
+                for (int h = 0; h < 6; h += 3)
+                    for (int r = 0; r < 3; r++)
+                        for (int l = 0; l < LANES; l++)
+                            R[h + r][l] = F.v[3 * r][l] * J[h][l] + F.v[3 * r + 1][l] * J[h + 1][l] +
+                                          F.v[3 * r + 2][l] * J[h + 2][l];
+                for (int r = 0; r < 6; r++)
+                    for (int l = 0; l < LANES; l++)
+                        J[r][l] = R[r][l];
+            }
+            for (ptrdiff_t l = 0; l < count; l++)
+                for (int r = 0; r < 6; r++)
+                    out[(first + l) * 6 * n + r * n + i] = J[r][l];
+        }
+    }
+}
+
+/* What poses at q (m, n) lack of targets T (m, 4, 4): (m, 6) in sizes and radians, and the Jacobians (m, 6, n). */
+void NAMED(errors)(const Chain *chain, const double *T, const double *q, ptrdiff_t m, double size, double *error,
+                   double *jacobian) {
+    double axes[MOST_JOINTS][6][LANES], J[6][LANES], W[12][LANES], w[3][LANES], trace[LANES];
+    Frame F;
+    int n = chain->n;
+    for (ptrdiff_t first = 0; first < m; first += LANES) {
+        ptrdiff_t count = m - first < LANES ? m - first : LANES;
+        followed(chain, q + first * n, count, axes, &F);
+        for (int i = 0; i < n; i++) {
+            column(chain, i, axes[i], &F, size, J);
+            for (ptrdiff_t l = 0; l < count; l++)
+                for (int r = 0; r < 6; r++)
+                    jacobian[(first + l) * 6 * n + r * n + i] = J[r][l];
+        }
+        for (int l = 0; l < LANES; l++) {
+            const double *wish = T + 16 * (first + (l < count ? l : count - 1));
+            for (int c = 0; c < 4; c++)
+                for (int r = 0; r < 3; r++)
+                    W[3 * c + r][l] = wish[4 * r + c];
+            trace[l] = 0.0;
+        }
+        for (int r = 0; r < 3; r++) {
+            int a = (r + 1) % 3, b = (r + 2) % 3;
+            for (int l = 0; l < LANES; l++)
+                w[r][l] = 0.0;
+            for (int c = 0; c < 3; c++)
+                for (int l = 0; l < LANES; l++)
+                    w[r][l] += F.v[3 * c + a][l] * W[3 * c + b][l] - F.v[3 * c + b][l] * W[3 * c + a][l];
+        }
+        for (int j = 0; j < 9; j++)
+            for (int l = 0; l < LANES; l++)
+                trace[l] += F.v[j][l] * W[j][l];
+        for (ptrdiff_t l = 0; l < count; l++) {
+            double *e = error + 6 * (first + l);
+            for (int r = 0; r < 3; r++)
+                e[r] = (W[9 + r][l] - F.v[9 + r][l]) / size;
+            double sine = 0.5 * sqrt(w[0][l] * w[0][l] + w[1][l] * w[1][l] + w[2][l] * w[2][l]);
+            double cosine = 0.5 * (trace[l] - 1.0);
+            if (sine < HALF_TURN && cosine < 0.0) {
+                /* Half a turn has no sine and so no direction here: it must still not pass for none. */
+                e[3] = 3.14159265358979323846;
+                e[4] = e[5] = 0.0;
+                continue;
+            }
+            double scale = 0.5 * atan2(sine, cosine) / (sine > 1e-300 ? sine : 1e-300);
+            for (int r = 0; r < 3; r++)
+                e[3 + r] = w[r][l] * scale;
+        }
+    }
+}

@@ -1,0 +1,2 @@
+#define LANES_NAME _avx2
+#include "lanes.h"

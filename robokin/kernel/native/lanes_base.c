@@ -1,0 +1,2 @@
+#define LANES_NAME _base
+#include "lanes.h"

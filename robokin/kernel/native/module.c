@@ -1,0 +1,333 @@
+/* The native kernel as a module of Python: numpy arrays in, numpy arrays out.
+
+   Only for calls from robokin.kernel, which has seen to shapes and types: what is checked here keeps memory safe.
+*/
+
+#define PY_SSIZE_T_CLEAN
+#define Py_LIMITED_API 0x030b0000
+#define NPY_NO_DEPRECATED_API NPY_1_19_API_VERSION
+#define NPY_TARGET_VERSION NPY_1_19_API_VERSION
+
+#include <Python.h>
+#include <numpy/arrayobject.h>
+
+#include "chain.h"
+
+#include <string.h>
+
+/* As robokin.kernel.native_kernel expects it. */
+#define INTERFACE 1
+
+/* numpy has this many at least, whatever its version. */
+#define MOST_DIMENSIONS 32
+
+static const char *CHAIN = "robokin.chain";
+
+typedef struct {
+    void (*poses)(const Chain *, const double *, ptrdiff_t, double *);
+    void (*frames)(const Chain *, const double *, ptrdiff_t, double *);
+    void (*jacobians)(const Chain *, const double *, ptrdiff_t, double, int, double *);
+    void (*errors)(const Chain *, const double *, const double *, ptrdiff_t, double, double *, double *);
+} Lanes;
+
+static const Lanes base = {poses_base, frames_base, jacobians_base, errors_base};
+static Lanes lanes;
+
+static const char *in_use = "base";
+
+/* A call on fewer configurations keeps the interpreter's lock: giving it back takes longer than the work. */
+static const npy_intp LONG = 256;
+
+static void freed(PyObject *capsule) { PyMem_Free(PyCapsule_GetPointer(capsule, CHAIN)); }
+
+/* A C-contiguous array of doubles (borrowed, or a new copy in *copy) with at least `least` dimensions. */
+static PyArrayObject *doubles(PyObject *object, int least, PyObject **copy) {
+    *copy = NULL;
+    if (!PyArray_Check(object)) {
+        PyErr_SetString(PyExc_TypeError, "expected an array");
+        return NULL;
+    }
+    PyArrayObject *array = (PyArrayObject *)object;
+    if (PyArray_NDIM(array) < least) {
+        PyErr_SetString(PyExc_ValueError, "expected an array of more dimensions");
+        return NULL;
+    }
+    if (PyArray_TYPE(array) == NPY_DOUBLE && PyArray_IS_C_CONTIGUOUS(array) && PyArray_ISALIGNED(array) &&
+        PyArray_ISNOTSWAPPED(array))
+        return array;
+    *copy = PyArray_FROM_OTF(object, NPY_DOUBLE, NPY_ARRAY_IN_ARRAY);
+    return (PyArrayObject *)*copy;
+}
+
+static PyObject *chain(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copies[3];
+    PyArrayObject *C, *revolute, *offsets;
+    (void)self;
+    if (count != 3) {
+        PyErr_SetString(PyExc_TypeError, "chain(constants, revolute, offsets)");
+        return NULL;
+    }
+    PyObject *capsule = NULL;
+    copies[1] = copies[2] = NULL;
+    C = doubles(args[0], 3, &copies[0]);
+    revolute = C ? doubles(args[1], 1, &copies[1]) : NULL;
+    offsets = revolute ? doubles(args[2], 1, &copies[2]) : NULL;
+    if (!offsets)
+        goto end;
+    npy_intp n = PyArray_DIM(revolute, 0);
+    if (n > MOST_JOINTS || PyArray_DIM(offsets, 0) != n || PyArray_SIZE(C) != 16 * (n + 1)) {
+        PyErr_SetString(PyExc_ValueError, "arrays of a chain do not fit each other");
+        goto end;
+    }
+    Chain *made = PyMem_Malloc(sizeof(Chain));
+    if (!made) {
+        PyErr_NoMemory();
+        goto end;
+    }
+    memset(made, 0, sizeof(Chain));
+    made->n = (int)n;
+    const double *m = PyArray_DATA(C), *turning = PyArray_DATA(revolute), *at = PyArray_DATA(offsets);
+    for (int i = 0; i <= n; i++, m += 16) {
+        double *out = i ? made->links[i - 1].m : made->first;
+        for (int c = 0; c < 4; c++)
+            for (int r = 0; r < 3; r++)
+                out[3 * c + r] = m[4 * r + c];
+        if (!i)
+            continue;
+        Constant *link = &made->links[i - 1];
+        made->revolute[i - 1] = turning[i - 1] != 0.0;
+        made->offsets[i - 1] = at[i - 1];
+        link->shifts = out[9] != 0.0 || out[10] != 0.0 || out[11] != 0.0;
+        for (int j = 0; j < 9; j++)
+            link->turns |= out[j] != (j % 4 ? 0.0 : 1.0);
+    }
+    capsule = PyCapsule_New(made, CHAIN, freed);
+    if (!capsule)
+        PyMem_Free(made);
+end:
+    for (int i = 0; i < 3; i++)
+        Py_XDECREF(copies[i]);
+    return capsule;
+}
+
+/* The chain and the joint values (..., n) of a call. */
+static const Chain *asked(PyObject *capsule, PyObject *object, PyArrayObject **q, PyObject **copy) {
+    const Chain *known = PyCapsule_GetPointer(capsule, CHAIN);
+    *copy = NULL;
+    if (!known)
+        return NULL;
+    *q = doubles(object, 1, copy);
+    if (!*q)
+        return NULL;
+    if (PyArray_DIM(*q, PyArray_NDIM(*q) - 1) != known->n) {
+        PyErr_SetString(PyExc_ValueError, "expected a value for each joint in the last dimension");
+        Py_XDECREF(*copy);
+        *copy = NULL;
+        return NULL;
+    }
+    return known;
+}
+
+/* A new array of q's leading shape and `more` dimensions. */
+static PyObject *empty(PyArrayObject *q, int more, const npy_intp *shape) {
+    npy_intp dims[MOST_DIMENSIONS];
+    int before = PyArray_NDIM(q) - 1;
+    if (before + more > MOST_DIMENSIONS) {
+        PyErr_SetString(PyExc_ValueError, "too many dimensions");
+        return NULL;
+    }
+    for (int i = 0; i < before; i++)
+        dims[i] = PyArray_DIM(q, i);
+    for (int i = 0; i < more; i++)
+        dims[before + i] = shape[i];
+    return PyArray_EMPTY(before + more, dims, NPY_DOUBLE, 0);
+}
+
+static npy_intp rows(PyArrayObject *q) {
+    npy_intp m = 1;
+    for (int i = 0; i < PyArray_NDIM(q) - 1; i++)
+        m *= PyArray_DIM(q, i);
+    return m;
+}
+
+static PyObject *pose(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyArrayObject *q;
+    PyObject *copy, *out = NULL;
+    (void)self;
+    const Chain *known = count == 2 ? asked(args[0], args[1], &q, &copy) : NULL;
+    if (!known) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "pose(chain, q)");
+        return NULL;
+    }
+    const npy_intp shape[] = {4, 4};
+    npy_intp m = rows(q);
+    out = empty(q, 2, shape);
+    if (out) {
+        double *to = PyArray_DATA((PyArrayObject *)out);
+        const double *from = PyArray_DATA(q);
+        if (m < LONG) {
+            lanes.poses(known, from, m, to);
+        } else {
+            Py_BEGIN_ALLOW_THREADS
+            lanes.poses(known, from, m, to);
+            Py_END_ALLOW_THREADS
+        }
+    }
+    Py_XDECREF(copy);
+    return out;
+}
+
+static PyObject *frames(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyArrayObject *q;
+    PyObject *copy, *out = NULL;
+    (void)self;
+    const Chain *known = count == 2 ? asked(args[0], args[1], &q, &copy) : NULL;
+    if (!known) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "frames(chain, q)");
+        return NULL;
+    }
+    const npy_intp shape[] = {known->n + 1, 4, 4};
+    npy_intp m = rows(q);
+    out = empty(q, 3, shape);
+    if (out) {
+        double *to = PyArray_DATA((PyArrayObject *)out);
+        const double *from = PyArray_DATA(q);
+        Py_BEGIN_ALLOW_THREADS
+        lanes.frames(known, from, m, to);
+        Py_END_ALLOW_THREADS
+    }
+    Py_XDECREF(copy);
+    return out;
+}
+
+static PyObject *jacobian(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyArrayObject *q;
+    PyObject *copy, *out = NULL;
+    (void)self;
+    const Chain *known = count == 4 ? asked(args[0], args[1], &q, &copy) : NULL;
+    if (!known) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "jacobian(chain, q, size, tool)");
+        return NULL;
+    }
+    double size = PyFloat_AsDouble(args[2]);
+    int tool = PyObject_IsTrue(args[3]);
+    const npy_intp shape[] = {6, known->n};
+    npy_intp m = rows(q);
+    out = PyErr_Occurred() ? NULL : empty(q, 2, shape);
+    if (out) {
+        double *to = PyArray_DATA((PyArrayObject *)out);
+        const double *from = PyArray_DATA(q);
+        if (m < LONG) {
+            lanes.jacobians(known, from, m, size, tool, to);
+        } else {
+            Py_BEGIN_ALLOW_THREADS
+            lanes.jacobians(known, from, m, size, tool, to);
+            Py_END_ALLOW_THREADS
+        }
+    }
+    Py_XDECREF(copy);
+    return out;
+}
+
+static PyObject *errors(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyArrayObject *q, *T = NULL;
+    PyObject *copy, *copy_of_T = NULL, *error = NULL, *J = NULL, *both = NULL;
+    (void)self;
+    const Chain *known = count == 4 ? asked(args[0], args[2], &q, &copy) : NULL;
+    if (!known) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "errors(chain, T, q, size)");
+        return NULL;
+    }
+    npy_intp m = rows(q);
+    double size = PyFloat_AsDouble(args[3]);
+    T = PyErr_Occurred() ? NULL : doubles(args[1], 2, &copy_of_T);
+    if (!T)
+        goto end;
+    if (PyArray_SIZE(T) != 16 * m) {
+        PyErr_SetString(PyExc_ValueError, "expected a target for each row of joint values");
+        goto end;
+    }
+    const npy_intp six[] = {6}, shape[] = {6, known->n};
+    error = empty(q, 1, six);
+    J = error ? empty(q, 2, shape) : NULL;
+    if (!J)
+        goto end;
+    double *e = PyArray_DATA((PyArrayObject *)error), *to = PyArray_DATA((PyArrayObject *)J);
+    const double *wish = PyArray_DATA(T), *from = PyArray_DATA(q);
+    if (m < LONG) {
+        lanes.errors(known, wish, from, m, size, e, to);
+    } else {
+        Py_BEGIN_ALLOW_THREADS
+        lanes.errors(known, wish, from, m, size, e, to);
+        Py_END_ALLOW_THREADS
+    }
+    both = PyTuple_Pack(2, error, J);
+end:
+    Py_XDECREF(error);
+    Py_XDECREF(J);
+    Py_XDECREF(copy);
+    Py_XDECREF(copy_of_T);
+    return both;
+}
+
+/* The instructions that are used, "base" or "avx2"; another set from now on if its name is given, as tests do. */
+static PyObject *instructions(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    (void)self;
+    if (count && args[0] != Py_None) {
+        PyObject *text = PyUnicode_Check(args[0]) ? PyUnicode_AsUTF8String(args[0]) : NULL;
+        const char *name = text ? PyBytes_AsString(text) : NULL;
+        int known = name && !strcmp(name, "base");
+        if (known) {
+            lanes = base;
+            in_use = "base";
+        }
+#ifdef ROBOKIN_AVX2
+        else if (name && !strcmp(name, "avx2") && __builtin_cpu_supports("avx2")) {
+            lanes = (Lanes){poses_avx2, frames_avx2, jacobians_avx2, errors_avx2};
+            in_use = "avx2";
+            known = 1;
+        }
+#endif
+        Py_XDECREF(text);
+        if (!known) {
+            PyErr_Clear();
+            PyErr_SetString(PyExc_ValueError, "this machine has no such instructions");
+            return NULL;
+        }
+    }
+    return PyUnicode_FromString(in_use);
+}
+
+static PyMethodDef methods[] = {
+    {"instructions", (PyCFunction)(void (*)(void))instructions, METH_FASTCALL, "instructions(name=None): the set in use"},
+    {"chain", (PyCFunction)(void (*)(void))chain, METH_FASTCALL, "chain(constants, revolute, offsets): a chain's handle"},
+    {"pose", (PyCFunction)(void (*)(void))pose, METH_FASTCALL, "pose(chain, q): the tool's poses (..., 4, 4)"},
+    {"frames", (PyCFunction)(void (*)(void))frames, METH_FASTCALL, "frames(chain, q): (..., n + 1, 4, 4)"},
+    {"jacobian", (PyCFunction)(void (*)(void))jacobian, METH_FASTCALL, "jacobian(chain, q, size, tool): (..., 6, n)"},
+    {"errors", (PyCFunction)(void (*)(void))errors, METH_FASTCALL, "errors(chain, T, q, size): (..., 6), (..., 6, n)"},
+    {NULL, NULL, 0, NULL},
+};
+
+static struct PyModuleDef module = {PyModuleDef_HEAD_INIT, "_native", "The native kernel.", -1, methods,
+                                    NULL, NULL, NULL, NULL};
+
+PyMODINIT_FUNC PyInit__native(void) {
+    import_array();
+    lanes = base;
+#ifdef ROBOKIN_AVX2
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx2")) {
+        lanes = (Lanes){poses_avx2, frames_avx2, jacobians_avx2, errors_avx2};
+        in_use = "avx2";
+    }
+#endif
+    PyObject *made = PyModule_Create(&module);
+    if (made && (PyModule_AddIntConstant(made, "interface", INTERFACE) < 0 ||
+                 PyModule_AddIntConstant(made, "most_joints", MOST_JOINTS) < 0))
+        Py_CLEAR(made);
+    return made;
+}
