@@ -61,6 +61,10 @@ SEVERAL = 3
 IDLE, TURNS = 2, 12
 """Turns that add nothing before the search ends, and turns at most."""
 
+CURVED = 0.1
+"""Part of the points of a dimension that are not even from which on the others are not either: of a cone that is narrow
+in one direction most hardly turn."""
+
 NARROWER = (0.7, 0.5)
 """Parts of the sphere on which is sought again where zeros were lost on the way to the pose: of a double branch that
 may be for its rounding alone."""
@@ -215,8 +219,11 @@ def _merged(reduced: Reduced, found: list[Measured]) -> list[Branch]:
     kinds = {(point.branch.dimension, point.branch.kernel) for point in found}
     for dimension, kernel in sorted(kinds, key=lambda kind: (-kind[0], kind[1])):
         alike = [point for point in found if (point.branch.dimension, point.branch.kernel) == (dimension, kernel)]
-        groups = _groups([point for point in alike if point.even], SAME)
-        groups += _bent([point for point in alike if not point.even])
+        bent = [point for point in alike if not point.even]
+        if len(bent) > CURVED * len(alike):
+            groups = _bent(alike)
+        else:
+            groups = _groups([point for point in alike if point.even], SAME) + _bent(bent)
         for members in groups:
             # A curve leaves the pose both ways: two half branches are one, four that touch are two.
             # A multiple zero that is not sharp may have been found twice.

@@ -10,8 +10,7 @@ from robokin.model import Robot, expect_robot
 from robokin.workspace.extremes import extent
 from robokin.workspace.measure import REDUNDANT, measurable, measure, structural_length
 from robokin.workspace.membership import decided
-from robokin.workspace.orientation import FEWER, SPARE, dexterity, expect_turnable
-from robokin.workspace.pose_descent import searched
+from robokin.workspace.orientation import dexterity, expect_turnable, notes_of_turns
 from robokin.workspace.sizes import Measure
 from robokin.workspace.space import space_of
 from robokin.workspace.workspace_result import Workspace
@@ -67,10 +66,7 @@ def analyse_workspace(
     length = structural_length(robot)
     solid = space.dimension == 3 and size.value > 0.0
     freedom = dexterity(space, bounds, size, samples, seed, voxel, cores) if dextrous else None
-    if freedom is not None and freedom.orientations and not freedom.every.exact:
-        notes.append(SPARE)
-        if searched(space, "approach" if freedom.group == "S2" else "pose"):
-            notes.append(FEWER)
+    notes += notes_of_turns(space, freedom)
     return Workspace(
         space=space,
         samples=samples,

@@ -56,9 +56,9 @@ ALMOST, NEAR_ALMOST = 5e-5, 16
 """What is still this near [size], and no more, is sought from so many starts on each face and edge: where the arm is
 singular with joints at their limits, steps gain ever less, and only starts on the right side of it arrive."""
 
-NEAR_ALONE = 8, 48
-"""Searches from starts near a point, at least and at most, where joints hang on each other and no variable is to spare:
-only starts on the right one of several sheets arrive."""
+NEAR_GEARED = 8, 48
+"""Searches from starts near a point, at least and at most, where joints hang on each other: only starts on the right
+one of several sheets arrive."""
 
 SHEETS = 4
 """So many of them for each combination of quarters of a turn that the variables' ranges hold."""
@@ -123,8 +123,8 @@ class Descent:
             self.tables = [] if formed else [[*faces], [*edges]]
         self.every_table = self.tables
         quarters = np.maximum((self.high - self.low)[space.robot.revolute[moving]] / (0.5 * np.pi), 1.0)
-        alone = space.gears is not None and len(moving) == space.dimension and not formed
-        self.alone = int(np.clip(SHEETS * np.prod(quarters), *NEAR_ALONE)) if alone else 0
+        sought = space.gears is not None and not formed
+        self.sheets = int(np.clip(SHEETS * np.prod(quarters), *NEAR_GEARED)) if sought else 0
         self.almost = ALMOST if space.gears is None else ALMOST_GEARED
         # Samples of many joints lie close together; what they leave empty may well be reached.
         many = MANY if space.gears is None else MANY_GEARED
@@ -209,9 +209,9 @@ class Descent:
         if self.exact is not None and len(left):
             there, q = self.exact.reached(np.ascontiguousarray(points[:, left].T))
             inside[left[there]], values[:, left[there]] = True, q[:, there]
-        if self.alone:
+        if self.sheets:
             left = np.flatnonzero(~inside)
-            starts = self.starts.near(points[:, left], self.alone, 0)[NEAR:]
+            starts = self.starts.near(points[:, left], self.sheets, 0)[NEAR:]
             self._search(points, left, starts, [(STUCK, STEPS)] * len(starts), inside, least, values)
         for tables in [*self.tables, self.learned]:
             left = np.flatnonzero(~inside)

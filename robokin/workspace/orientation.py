@@ -145,6 +145,13 @@ def dexterity(
     )
 
 
+def notes_of_turns(space: Space, found: Dexterity | None) -> list[str]:
+    """What is to be known of how freely an arm's tool can be turned."""
+    if found is None or not found.orientations or found.every.exact:
+        return []
+    return [SPARE, FEWER] if searched(space, "approach" if found.group == "S2" else "pose") else [SPARE]
+
+
 def expect_turnable(space: Space) -> None:
     """Raise InputError for a robot whose orientations could only be searched for: no size of theirs would be sound."""
     group, robot = group_of(space), space.robot

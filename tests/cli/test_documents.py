@@ -221,8 +221,8 @@ def test_every_key_of_a_schema_is_in_some_document(command, check):
 ORIENTATIONS = {"quaternion-xyzw", "rotvec", "abc", "wpr"}
 ELSEWHERE = {
     ("fk", None): ORIENTATIONS,
-    ("show", None): {"joint", "ratio"},  # of couplings, which test_trees has
-    ("convert", None): {"joint", "ratio"},
+    ("show", None): {"joint", "ratio", "beside"},  # of couplings, which test_trees and test_couplings have
+    ("convert", None): {"joint", "ratio", "beside"},
     ("plot", None): ORIENTATIONS | {"euler"},
     ("workspace", None): {*ORIENTATIONS, "euler", "rpy", "quaternion", "matrix", "pose", "q", "holds", "length_error"},
     ("check", "fk"): {"student", "students", "line", "approach", "matrix", "task", "relative"},

@@ -41,15 +41,11 @@ def at_limits(space, count, seed):
     return q
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 5, 8, 11, 14, 15, 18, 20, 23, 26])
+@pytest.mark.parametrize("seed", [0, 1, 5, 6, 8, 9, 11, 14, 15, 18, 23, 28])
 def test_what_forward_kinematics_reaches_is_a_member_and_within_the_bounds(seed):
     robot = drawn_arm(seed)
-    try:
-        space = space_of(robot) if robot else None
-    except robokin.InputError:
-        space = None
-    if space is None or space.gears is None or not space.moving:
-        pytest.skip("nothing of the kind was drawn")
+    space = space_of(robot)
+    assert space.gears is not None
     count = 600
     q = joint_values(space, "sobol", seed, 0, count, count, every=True)
     p = positions(space, q)

@@ -15,9 +15,15 @@ from robokin.inverse.verify import within_limits
 from robokin.model import Joint, JointType, Robot
 from robokin.spatial import rotation_transform
 from robokin.workspace.attitudes import attitudes, group_of
+from robokin.workspace.orientation import FEWER, SPARE, notes_of_turns
 from robokin.workspace.pose_descent import searched, sought_poses
+from robokin.workspace.sizes import Measure
 from robokin.workspace.space import space_of
 from robokin.workspace.trials import configurations, fractions, reached_with_more
+from robokin.workspace.workspace_result import Dexterity
+
+NONE = Measure(0.0, 0.0, "", 0)
+FOUND = Dexterity("SO(3)", 86, 1.0, np.zeros((0, 3)), 0.1, np.zeros(0), False, 0.5, NONE, NONE, NONE)
 
 EDGE = 0.38
 """The part of the joint values that stand at limits."""
@@ -92,6 +98,14 @@ def test_a_direction_of_an_arm_whose_last_joint_rolls_is_searched_without_it() -
     assert np.mean(inside) > 0.95
     there = robokin.forward_kinematics(robot, q[inside])
     assert np.allclose(there[:, :3, 2:], T[inside, :3, 2:], atol=1e-8)
+
+
+def test_the_answer_says_that_fewer_orientations_are_tried() -> None:
+    found = replace(FOUND, every=Measure(0.0, 0.0, "", 0, exact=False))
+    assert notes_of_turns(space_of(robokin.load("rizon4")), found) == [SPARE, FEWER]
+    assert notes_of_turns(space_of(robokin.load("panda")), found) == [SPARE]
+    assert notes_of_turns(space_of(robokin.load("puma560")), replace(found, every=NONE)) == []
+    assert notes_of_turns(space_of(robokin.load("rizon4")), None) == []
 
 
 def test_no_pose_depends_on_the_others_nor_on_their_order() -> None:

@@ -39,6 +39,9 @@ END = 1e-5
 POINT = 1e-9
 """A piece that is shorter, as a part of a step of its curve, is a point: places are known to about that."""
 
+ONE_POINT = 1e-9
+"""Configurations whose joint values [rad | m] differ by less are one point of a curve that touches its limits."""
+
 INNER = 5
 """Points of an arc that is shorter than a step of its curve."""
 
@@ -75,7 +78,19 @@ def arcs_of_each(curves: Sequence[Curve], chain: Chain, T: Array, limits: Array,
     found = pieces(tracks)
     for piece, arc in zip(found, _arcs(tracks, found), strict=True):
         arcs[of[piece.curve]].append(arc)
-    return [tuple(some) for some in arcs]
+    return [_each_once(some) for some in arcs]
+
+
+def _each_once(arcs: list[Arc]) -> tuple[Arc, ...]:
+    """The arcs without points of others: where a curve touches its limits rounding may find the place twice."""
+    points = [k for k, arc in enumerate(arcs) if len(arc.q) == 1]
+    again = {
+        k
+        for k in points
+        for i, other in enumerate(arcs)
+        if i != k and not (k < i and i in points) and np.min(np.max(np.abs(other.q - arcs[k].q), axis=1)) <= ONE_POINT
+    }
+    return tuple(arc for k, arc in enumerate(arcs) if k not in again)
 
 
 def _arcs(tracks: Tracks, found: list[CurvePiece]) -> list[Arc]:
