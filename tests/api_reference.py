@@ -51,8 +51,8 @@ HEAD = """# Public names
 Made from the docstrings by `make docs`; to change what stands here, change these. [From Python](python.md) is the way
 in, with examples. Lengths are in metres and angles in radians unless it is said otherwise; `(..., n)` is an array of
 any leading shape with n numbers in the last place, n being the number of joint variables. An array argument is whatever
-numpy makes an array of real numbers of. `robokin.__version__` is the version, and `robokin.kernel_in_use` says "native" or
-"python" (environment variable ROBOKIN_KERNEL).
+numpy makes an array of real numbers of. `robokin.__version__` is the version; `robokin.kernel_in_use` is "native" or
+"python" (as the environment variable ROBOKIN_KERNEL asks).
 """
 
 

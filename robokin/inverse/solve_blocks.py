@@ -7,6 +7,7 @@ import numpy as np
 from robokin.arrays import Array, Index
 from robokin.inverse.analysis import Analysis, General, chain_pose_parts
 from robokin.inverse.claims import COUNTED, SPREAD, Claims, replaced, unclaimed
+from robokin.inverse.elimination.complex_newton import SURE
 from robokin.inverse.second_look import look_again
 from robokin.inverse.verify import Found, distinct, distinct_and_close, merged, nothing
 from robokin.inverse.window import SINGULAR, TOLD_APART, beyond_chain, nearly_singular, solve_window
@@ -146,7 +147,9 @@ def complete_solutions(
     if len(possible):
         rows = rows_of(possible, count)
         whole = count[found.index[rows]] == (analysis.number if chain.n == 6 else -1)
-        least = np.where(whole, TOLD_APART, SINGULAR)
+        # What has not settled is told apart by nothing, however far its neighbours are.
+        off = np.maximum(found.position[rows] / analysis.size, found.angle[rows])
+        least = np.maximum(np.where(whole, TOLD_APART, SINGULAR), np.sqrt(off / SURE))
         doubt.certain[found.index[rows[nearly_singular(chain, found.q[rows], analysis.size, least)]]] = True
     again = np.flatnonzero(doubt.certain)
     again = again[~beyond_chain(chain, T[again], analysis.size)]

@@ -96,7 +96,9 @@ def complex_count(analysis: Analysis, closing: Array, found: Found, imaginary: C
     values = (found.q + six.chain.offsets) / np.where(six.chain.revolute, 1.0, loop.size)
     # The real ones are distinct and close; a determinant this great has no small singular value.
     sound = determinants(loop, values) > CLEARLY_REGULAR
-    sound[~sound] = regular(loop, values[~sound], np.zeros(np.count_nonzero(~sound)))
+    # Where several meet they are left as far apart as they have not settled: nothing vouches for these.
+    residual = np.maximum(found.position / loop.size, found.angle)
+    sound[~sound] = regular(loop, values[~sound], residual[~sound])
     count = np.bincount(found.index[sound], minlength=len(closing))
     index, complex_values = imaginary.index, imaginary.values
     complex_values, residual = complex_refine(loop, closing, index, complex_values, 0)

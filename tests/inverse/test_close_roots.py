@@ -395,3 +395,14 @@ def test_a_self_motion_that_touches_a_corner_of_nearly_full_turns_has_a_piece_of
     result, broken = answered(robot, q)
     assert not broken
     assert any(len(arc.q) == 1 for family in result.families for arc in family.arcs)
+
+
+def test_what_has_not_settled_counts_for_nothing(rng):
+    """Where four solutions meet, four places that Newton's steps left 1e-5 apart were counted as all there are."""
+    robot = random_chain(np.random.default_rng([560, 455]))
+    q = np.array([np.pi, np.pi / 2, 0.38, 0.0, -np.pi / 2, -np.pi / 2])
+    T = np.tile(robokin.forward_kinematics(robot, q), (60, 1, 1))
+    T[:, :3] += 2e-16 * rng.normal(size=(60, 3, 4))
+    for result in robokin.solve_ik(robot, T):
+        assert not result.complete
+        assert any(np.max(np.abs(solution.q - q)) < 1e-4 for solution in result.solutions)
