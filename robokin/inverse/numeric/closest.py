@@ -95,7 +95,7 @@ def nearest_configurations(
     Also their distances (m,) [m] and angles (m,) [rad] from the targets. Idle joints stay at `home` (n,), which is
     also one of the initial guesses. more_starts: more of them, the targets (s,) and the configurations (s, n)
     [rad | m], within the limits or not: angles are turned towards the limits and what is outside is put on them.
-    The answer for a target does not depend on the others.
+    The answer for a target does not depend on the others, but for the last digits.
     """
     chain, size = analysis.chain, analysis.size
     scale = np.where(chain.revolute, 1.0, size)
@@ -191,8 +191,9 @@ def _search(ways: Ways, T: Array, x: Array, known: int, home: Array, opened: int
     found = nearer_still(ways, many, found, 40)
     found = at_the_edge(ways, many, found, LEAST, 20, 25)
     found = better(found, turned_in_place(ways, many, found))
-    move = _moves(ways.chain, found.x.T.reshape(m, count, n), home, own)
-    best = _closest(found.distance.reshape(m, count), found.angle.reshape(m, count), move)
+    x = found.x.T.reshape(m, count, n)
+    move, whole = _moves(ways.chain, x, home, own), np.max(np.abs(x - home)[:, :, :own], axis=2)
+    best = _closest(found.distance.reshape(m, count), found.angle.reshape(m, count), move, whole)
     return found.pick(best + count * np.arange(m))
 
 
@@ -230,9 +231,13 @@ def _moves(chain: Chain, x: Array, home: Array, own: int) -> Array:
     return farthest
 
 
-def _closest(distance: Array, angle: Array, farthest: Array) -> Index:
-    """(m,) the best of ends with distances [size], angles and joint moves, each (m, k), by the law above."""
+def _closest(distance: Array, angle: Array, farthest: Array, whole: Array) -> Index:
+    """(m,) the best of ends with distances [size], angles and joint moves, each (m, k), by the law above.
+
+    farthest: the greatest moves with angles on the circle; whole: without, which tell apart what is a full turn apart.
+    """
     angle = np.where(distance <= distance.min(axis=1, keepdims=True) + SAME_PLACE, angle, np.inf)
     farthest = np.where(angle <= angle.min(axis=1, keepdims=True) + SAME_ANGLE, farthest, np.inf)
-    best: Index = np.argmin(farthest, axis=1)
+    whole = np.where(farthest <= farthest.min(axis=1, keepdims=True) + SAME_ANGLE, whole, np.inf)
+    best: Index = np.argmin(whole, axis=1)
     return best
