@@ -18,8 +18,8 @@
 /* As robokin.kernel.native_kernel expects it. */
 #define INTERFACE 1
 
-/* numpy has this many at least, whatever its version. */
-#define MOST_DIMENSIONS 32
+/* numpy has no more, whatever its version. */
+#define MOST_DIMENSIONS 64
 
 static const char *CHAIN = "robokin.chain";
 
