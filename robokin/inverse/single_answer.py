@@ -103,12 +103,12 @@ def _redundant_families(request: Request, block: TargetBlock, i: int, q: Array) 
     T, size = block.T[i], analysis.size
     known = block.every[0][block.every[1] == i]
     seeds = np.concatenate([q, seeds_of(analysis, T, known, limits, request.middle)])
-    sets = families(analysis.chain, T[None], seeds, size)
+    sets = families(analysis.chain, T[None], seeds, size, limits=limits)
     curves = sets.curves[0]
     _, crossing = crossings(curves, analysis.chain, np.broadcast_to(T, (len(curves), 4, 4)), size)
     if len(crossing):
         seeds = np.concatenate([seeds, crossing])
-        sets = families(analysis.chain, T[None], seeds, size)
+        sets = families(analysis.chain, T[None], seeds, size, limits=limits)
     curves = sets.curves[0]
     found = arcs_of_each(curves, analysis.chain, np.broadcast_to(T, (len(curves), 4, 4)), limits, size)
     out = []

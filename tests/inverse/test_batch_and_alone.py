@@ -71,3 +71,18 @@ def test_straight_lines_are_of_slides_or_of_one_axis(rng):
         assert straight_line(J, rng.normal(size=5)) is None
         # Two slides that are not parallel move the tool whatever they do.
         assert straight_line(J, np.array([0.0, 0.0, 0.7, 0.7, 0.0])) is None
+
+
+def test_slides_are_followed_to_their_limits_however_long():
+    """A gantry whose axes are two hundredths of its strokes apart."""
+    strokes = (0.93, 0.33)
+    robot = arms.random_chain(np.random.default_rng([77, 33]))
+    assert (robot.types, robot.limits[[0, 2], 1].tolist()) == ("PRP", list(strokes))
+    for q in ([0.93, 0.0, 0.0825], [0.465, 0.0, 0.2475]):
+        result = robokin.solve_ik(robot, robokin.forward_kinematics(robot, np.array(q)))
+        (family,) = result.families
+        (arc,) = family.arcs
+        total = q[0] + q[2]
+        ends = sorted(arc.q[[0, -1], 0].tolist())
+        # What both slides leave of the line on which their sum stays.
+        np.testing.assert_allclose(ends, [max(0.0, total - strokes[1]), min(strokes[0], total)], rtol=0, atol=1e-9)

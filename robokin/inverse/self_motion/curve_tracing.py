@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.inverse.self_motion.fronts import REACH, TRIAL_STEPS, Fronts
+from robokin.inverse.self_motion.fronts import TRIAL_STEPS, Fronts, reach_of
 from robokin.inverse.self_motion.null_motion import (
     CLOSES,
     errors,
@@ -27,6 +27,9 @@ from robokin.kernel.chain import Chain
 
 BESIDE = 0.05
 """How far from the polyline a point of the curve can be [rad | size]; a chord of LONGEST is off by 0.01."""
+
+APART, FEWEST, MOST = 0.3, 61, 2001
+"""Distance of points on a straight line of slides [size], and how many there are at least and at most."""
 
 MOVES = 1e-6
 """A joint that keeps its value to this [rad | size] along a curve stands still."""
@@ -70,13 +73,13 @@ def trace_many(
     ways: Array,
     size: float,
     locked: Flags | None = None,
-    bounds: Array | None = None,
+    limits: Array | None = None,
     trial: Flags | None = None,
 ) -> list[Curve | None]:
     """The curves through x (s, n) at poses T (s, 4, 4) along ways (s, n), with joints locked (s, n) or none.
 
-    x: [rad | size]; bounds: (n, 2) [rad | m], beyond which a curve is not followed; trial: (s,) for which it is not
-    known whether a curve leads away from x: where none does there is None.
+    x: [rad | size]; limits: (own, 2) [rad | m], which slides are followed to if they are far; trial: (s,) for which it
+    is not known whether a curve leads away from x: where none does there is None.
     """
     s, n = x.shape
     locked = np.zeros((s, n), dtype=bool) if locked is None else locked
@@ -85,10 +88,10 @@ def trace_many(
     curves: list[Curve | None] = [None] * s
     for i, line in enumerate(lines):
         if line is not None:
-            curves[i] = _line(chain, T[i], x[i], line, size, bounds)
+            curves[i] = _line(chain, T[i], x[i], line, size, limits)
     rest = np.array([i for i, curve in enumerate(curves) if curve is None], dtype=np.intp)
     if len(rest):
-        fronts = Fronts(chain, T[rest], x[rest], ways[rest], size, locked[rest], bounds)
+        fronts = Fronts(chain, T[rest], x[rest], ways[rest], size, locked[rest], limits)
         fronts.run(np.zeros(len(rest), dtype=bool) if trial is None else trial[rest])
         for place, i in enumerate(rest):
             curves[i] = None if fronts.stays[place] else _followed(fronts, place)
@@ -108,7 +111,7 @@ def leads_away(chain: Chain, T: Array, x: Array, ways: Array, size: float, locke
     return fronts.away()
 
 
-def _line(chain: Chain, T: Array, x: Array, line: Array, size: float, bounds: Array | None) -> Curve | None:
+def _line(chain: Chain, T: Array, x: Array, line: Array, size: float, limits: Array | None) -> Curve | None:
     """The straight line through x (n,) along `line` (n,); None where it does not reach the pose after all."""
     moving = np.flatnonzero(line)
     turns = bool(chain.revolute[moving].all())
@@ -116,14 +119,12 @@ def _line(chain: Chain, T: Array, x: Array, line: Array, size: float, bounds: Ar
     if turns:
         s = np.linspace(-np.pi, np.pi, 61)
     else:
-        reach = REACH + np.where(np.abs(x) > REACH, np.abs(x), 0.0)
-        low, high = -reach, reach
-        if bounds is not None:
-            low, high = np.maximum(low, bounds[:, 0] / scale), np.minimum(high, bounds[:, 1] / scale)
+        reach = reach_of(chain, x, size, limits)
         with np.errstate(divide="ignore"):
-            ends = np.stack([(low - x)[moving], (high - x)[moving]]) / line[moving]
-        s = np.append(np.linspace(float(np.max(np.min(ends, axis=0))), float(np.min(np.max(ends, axis=0))), 61), 0.0)
-        s = np.unique(s)
+            ends = np.stack([(-reach - x)[moving], (reach - x)[moving]]) / line[moving]
+        first, last = float(np.max(np.min(ends, axis=0))), float(np.min(np.max(ends, axis=0)))
+        count = int(np.clip((last - first) / APART, FEWEST, MOST))
+        s = np.unique(np.append(np.linspace(first, last, count), 0.0))
     points = x + s[:, None] * line
     e, _ = errors(chain, np.broadcast_to(T, (len(s), 4, 4)), points, size)
     if float(np.max(np.abs(e))) > 10.0 * CLOSES:

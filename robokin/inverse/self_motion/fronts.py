@@ -68,7 +68,10 @@ CORRECTION = 0.3
 """The greatest correction of a step, as a part of it."""
 
 REACH = 20.0
-"""How far a joint that slides is followed where nothing bounds it [size]."""
+"""How far a joint that slides is followed where its limits are no wider [size]."""
+
+BEYOND = 0.5
+"""How far it is followed beyond wider limits [size]."""
 
 MOST_STEPS = 500
 """Steps each way at most: curves of some 70 rad. Closed ones take some 60, and more where they pass crossings."""
@@ -87,6 +90,21 @@ SAME = 1e-5
 1e-8 at least, and to 1e-6 where they count twice."""
 
 
+def slide_reach(chain: Chain, size: float, limits: Array | None) -> Array:
+    """How far (n,) joints are followed [size]: those that slide to their limits (own, 2) [m] if these are far."""
+    reach = np.where(chain.revolute, np.inf, REACH)
+    if limits is not None:
+        farthest = np.max(np.abs(limits), axis=1, where=np.isfinite(limits), initial=0.0) / size + BEYOND
+        reach[: len(limits)] = np.maximum(reach[: len(limits)], farthest)
+    return reach
+
+
+def reach_of(chain: Chain, x: Array, size: float, limits: Array | None) -> Array:
+    """The same (s, n) for curves that begin at x (s, n) [rad | size], which may be farther out."""
+    reach = slide_reach(chain, size, limits)
+    return np.asarray(reach + np.where(np.abs(x) > reach, np.abs(x), 0.0))
+
+
 class Fronts:
     """Both ends of many curves that grow from their seeds, all at once.
 
@@ -94,7 +112,7 @@ class Fronts:
     """
 
     def __init__(
-        self, chain: Chain, T: Array, x: Array, ways: Array, size: float, locked: Flags, bounds: Array | None
+        self, chain: Chain, T: Array, x: Array, ways: Array, size: float, locked: Flags, limits: Array | None
     ) -> None:
         self.chain, self.size, self.scale = chain, size, scale_of(chain, size)
         self.s, self.n = x.shape
@@ -113,11 +131,8 @@ class Fronts:
         self.locks = np.where(np.concatenate([locked, locked])[:, :, None], np.eye(self.n), 0.0)
         self.locking = bool(locked.any())
         # What one curve comes to is not to depend on what others are followed beside it.
-        reach = np.where(chain.revolute, np.inf, REACH) + np.where(np.abs(self.x) > REACH, np.abs(self.x), 0.0)
+        reach = reach_of(chain, self.x, size, limits)
         self.low, self.high = -reach, reach
-        if bounds is not None:
-            self.low = np.maximum(self.low, bounds[:, 0] / self.scale)
-            self.high = np.minimum(self.high, bounds[:, 1] / self.scale)
         # Solutions that count twice along the curve need more Newton steps; beside a crossing the first step is short.
         _, J = errors(chain, self.T, self.x, size)
         values = np.linalg.svd(np.concatenate([J, self.locks], axis=1), compute_uv=False)[:, self.n - 2]

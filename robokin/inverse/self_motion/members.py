@@ -19,7 +19,7 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.closed_form.spherical_wrist import SphericalTriple
 from robokin.inverse.self_motion.curve_tracing import Curve
-from robokin.inverse.self_motion.fronts import REACH
+from robokin.inverse.self_motion.fronts import slide_reach
 from robokin.inverse.self_motion.nearest_member import members_near, nearest_on_each
 from robokin.inverse.self_motion.null_motion import ZERO, corrected, errors, on_the_way_home, scale_of
 from robokin.inverse.self_motion.solution_sets import Families, families
@@ -115,14 +115,14 @@ def _once(
 ) -> tuple[Found, dict[int, list[SelfMotion]], Index, Index]:
     """`listed_once`, whatever the limits say of those that are left out."""
     least = least_singular_values(chain, found.q, size)
-    found, least, astray = _within_reach(chain, T, found, least, size)
+    found, least, astray = _within_reach(chain, T, found, least, size, limits)
     found, least = _thinned(chain, found, least, size)
     singular = np.flatnonzero(least < ZERO)
     if not len(singular):
         return found, {}, astray, np.zeros(len(T), dtype=np.intp)
     q, index = found.q.copy(), found.index
     position, angle = found.position.copy(), found.angle.copy()
-    sets = families(chain, T, q[singular], size, index[singular], known)
+    sets = families(chain, T, q[singular], size, index[singular], known, limits=limits)
     local = sets.local
     # On the way to a multiple root that the target only nearly has, a solution is better left where it is.
     there, _ = error_and_jacobian(chain, T[index[singular]], local.q, size)
@@ -193,7 +193,9 @@ def _stand_ins(
     return stands, curves, lost
 
 
-def _within_reach(chain: Chain, T: Array, found: Found, least: Array, size: float) -> tuple[Found, Array, Index]:
+def _within_reach(
+    chain: Chain, T: Array, found: Found, least: Array, size: float, limits: Array
+) -> tuple[Found, Array, Index]:
     """The solutions and their least singular values with none on far ends of self-motions, and the targets (k,) of
     which some were left out.
 
@@ -201,8 +203,7 @@ def _within_reach(chain: Chain, T: Array, found: Found, least: Array, size: floa
     brought near. Curves come from where they are followed, so that of targets with other singular solutions no
     member beyond is needed.
     """
-    slides = ~chain.revolute
-    far = np.flatnonzero((least < ZERO) & np.any(np.abs(found.q[:, slides]) > REACH * size, axis=1))
+    far = np.flatnonzero((least < ZERO) & np.any(np.abs(found.q) > slide_reach(chain, size, limits) * size, axis=1))
     if not len(far):
         return found, least, far
     q, position, angle, least = found.q.copy(), found.position.copy(), found.angle.copy(), least.copy()

@@ -63,7 +63,7 @@ def listed_with_more(
     growing = sorted({*motions, *searched.tolist()})
     ends = _searched(chain, T[searched], size)
     for step in range(ROUNDS):
-        curves = _crossing(chain, T, motions, growing, size)
+        curves = _crossing(chain, T, motions, growing, size, limits)
         seeds = {i: _amid(chain, some) for i, some in curves.items()}
         for i in searched.tolist() if step == 0 else ():
             mine = ends.q[ends.index == np.searchsorted(searched, i)]
@@ -101,7 +101,7 @@ def listed_with_more(
 
 
 def _crossing(
-    chain: Chain, T: Array, motions: dict[int, list[SelfMotion]], targets: list[int], size: float
+    chain: Chain, T: Array, motions: dict[int, list[SelfMotion]], targets: list[int], size: float, limits: Array
 ) -> dict[int, list[Curve]]:
     """The curves that leave the crossings of known ones, which are not among them, of some targets that have any."""
     known = [(i, motion.curve) for i in targets for motion in motions.get(i, [])]
@@ -112,7 +112,7 @@ def _crossing(
     some, index = np.unique(of[which], return_inverse=True)
     before = {k: [motion.curve for motion in motions[i]] for k, i in enumerate(some.tolist())}
     found = {}
-    for k, sets in enumerate(families(chain, T[some], at, size, index, before, alone=False).curves):
+    for k, sets in enumerate(families(chain, T[some], at, size, index, before, False, limits).curves):
         curves = [part for curve in sets[len(before[k]) :] for part in curve.sheets or (curve,)]
         i = int(some[k])
         new = ~_on(chain, T[i], _amid(chain, curves), motions[i], size)

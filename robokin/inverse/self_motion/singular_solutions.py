@@ -228,8 +228,12 @@ def trace(chain: Chain, T: Array, q: Array, size: float, way: Array | None = Non
     return traced_sets(chain, T[None], local, [(0, which)], size)[0]
 
 
-def traced_sets(chain: Chain, T: Array, local: Local, chosen: list[tuple[int, int]], size: float) -> list[Curve | None]:
+def traced_sets(
+    chain: Chain, T: Array, local: Local, chosen: list[tuple[int, int]], size: float, limits: Array | None = None
+) -> list[Curve | None]:
     """The sets through some seeds, each given as (seed, which of its directions); T: (s, 4, 4) the seeds' targets.
+
+    limits: (own, 2) [rad | m] which slides are followed to if they are far.
 
     Where the set has more dimensions all its directions are followed. Where no curve leads away from a seed on trial
     there is None.
@@ -252,7 +256,8 @@ def traced_sets(chain: Chain, T: Array, local: Local, chosen: list[tuple[int, in
         np.array([row[1] for row in rows]),
         size,
         np.array([row[2] for row in rows]),
-        trial=local.trial[index],
+        limits,
+        local.trial[index],
     )
     out: list[Curve | None] = []
     for (i, _), (first, last) in zip(chosen, spans, strict=True):

@@ -62,11 +62,12 @@ def families(
     index: Index | None = None,
     known: Mapping[int, Sequence[Curve]] | None = None,
     alone: bool = True,
+    limits: Array | None = None,
 ) -> Families:
     """Every self-motion that seeds (s, n) [rad | m] are on, for targets T (m, 4, 4); index: (s,) the seeds' targets.
 
     known: those of some targets, by their numbers, that have been followed before; alone: whether seeds that are on
-    none are made exact.
+    none are made exact; limits: (own, 2) [rad | m], which slides are followed to if they are far.
     """
     index = np.zeros(len(seeds), dtype=np.intp) if index is None else index
     T = T.reshape(-1, 4, 4)
@@ -83,7 +84,7 @@ def families(
     while waiting:
         chosen = _few_of_each(waiting, index)
         done = set(chosen)
-        traced = traced_sets(chain, T[index], local, chosen, size)
+        traced = traced_sets(chain, T[index], local, chosen, size, limits)
         single += [entry[0] for entry, curve in zip(chosen, traced, strict=True) if curve is None]
         found = [(entry, curve) for entry, curve in zip(chosen, traced, strict=True) if curve is not None]
         same = _pairs_through(chain, T, found, index, local, size)
