@@ -22,7 +22,12 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 KERNEL = "robokin/kernel/_native.abi3.so"
 
 # Each product and sum is rounded by itself: the same digits with every set of instructions.
-FLAGS = ["-O3", "-fPIC", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off", "-fvisibility=hidden"]
+# They come after CFLAGS: with -ffast-math sines would be wrong by one, and the process would lose subnormal numbers.
+FIRST = ["-fPIC", "-fvisibility=hidden"]
+LAST = [
+    "-O3", "-fno-fast-math", "-fno-unsafe-math-optimizations", "-fno-math-errno", "-fno-trapping-math",
+    "-ffp-contract=off",
+]  # fmt: skip
 
 
 class KernelHook(BuildHookInterface[Any]):
@@ -37,19 +42,20 @@ class KernelHook(BuildHookInterface[Any]):
         self.work = tempfile.TemporaryDirectory()
         try:
             kernel = compiled(root / "robokin" / "kernel" / "native", Path(self.work.name))
-        except (ImportError, OSError, ValueError, subprocess.SubprocessError):
+            if version == "editable":
+                # A process may have the old one open: it keeps that.
+                fresh = (root / KERNEL).with_suffix(f".{os.getpid()}")
+                shutil.copy(kernel, fresh)
+                fresh.replace(root / KERNEL)
+                return
+        except (ImportError, OSError, ValueError, subprocess.SubprocessError) as error:
             if os.environ.get("ROBOKIN_REQUIRE_KERNEL") == "1":
+                print(getattr(error, "stderr", ""), file=sys.stderr)
                 raise
-            return
-        if version == "editable":
-            # A process may have the old one open: it keeps that.
-            fresh = (root / KERNEL).with_suffix(f".{os.getpid()}")
-            shutil.copy(kernel, fresh)
-            fresh.replace(root / KERNEL)
             return
         build_data["force_include"][str(kernel)] = KERNEL
         build_data["pure_python"] = False
-        build_data["tag"] = f"cp311-abi3-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+        build_data["tag"] = f"cp311-abi3-{self.build_config.builder.get_best_matching_tag().rpartition('-')[2]}"
 
 
 def compiled(sources: Path, work: Path) -> Path:
@@ -58,10 +64,10 @@ def compiled(sources: Path, work: Path) -> Path:
 
     if int(numpy.__version__.partition(".")[0]) < 2:
         raise ValueError("the headers of numpy 1 make a module that numpy 2 refuses")
-    if os.name == "nt" or sysconfig.get_config_var("Py_GIL_DISABLED"):
-        raise ValueError("not built for Windows or for Python without its lock yet")
+    if sys.implementation.name != "cpython" or os.name == "nt" or sysconfig.get_config_var("Py_GIL_DISABLED"):
+        raise ValueError("not built for Windows, for Pythons without their lock and for others than CPython")
     compiler = shlex.split(os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc")
-    flags = [*FLAGS, *shlex.split(os.environ.get("CFLAGS", ""))]
+    flags = [*FIRST, *shlex.split(os.environ.get("CFLAGS", "")), *LAST]
     includes = [f"-I{sysconfig.get_path('include')}", f"-I{numpy.get_include()}"]
     wanted = {"module.c": includes, "lanes_base.c": []}
     if platform.machine() in ("x86_64", "AMD64"):
@@ -73,9 +79,11 @@ def compiled(sources: Path, work: Path) -> Path:
     kernel = work / "_native.abi3.so"
     shared = ["-bundle", "-undefined", "dynamic_lookup"] if sys.platform == "darwin" else ["-shared"]
     run([*compiler, *flags, *shared, *objects, "-o", str(kernel), "-lm"])
+    if not kernel.is_file():
+        raise OSError("the compiler made nothing")
     return kernel
 
 
 def run(command: list[str]) -> None:
     """Run a compiler without a word of its own."""
-    subprocess.run(command, check=True, capture_output=True, text=True)
+    subprocess.run(command, check=True, capture_output=True, text=True, stdin=subprocess.DEVNULL)

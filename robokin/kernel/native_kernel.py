@@ -7,6 +7,7 @@ It is optional and gives what Python's code gives, but for the last digits. `ROB
 from __future__ import annotations
 
 import os
+import sys
 from types import ModuleType
 
 import numpy as np
@@ -23,13 +24,14 @@ def _loaded(choice: str) -> ModuleType | None:
     """The kernel for what ROBOKIN_KERNEL says; None for Python's own code."""
     if choice not in ("", "python", "native"):
         raise InputError(f"ROBOKIN_KERNEL is {choice}, expected python or native")
-    if choice != "python":
+    # A Python without its lock would load a module that is not made for it.
+    if choice != "python" and "t" not in getattr(sys, "abiflags", ""):
         try:
             from robokin.kernel import _native
         except ImportError:
             pass
         else:
-            if _native.interface == INTERFACE:
+            if getattr(_native, "interface", None) == INTERFACE:
                 return _native
     if choice == "native":
         raise InputError("ROBOKIN_KERNEL is native, but this installation has no native kernel")

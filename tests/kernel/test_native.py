@@ -150,8 +150,28 @@ def test_wrong_shapes_are_refused(q):
             ask(object(), np.zeros(6))
     with pytest.raises((TypeError, ValueError)):
         native.errors(known, np.zeros((2, 4, 4)), np.zeros((3, 6)), 1.0)
-    with pytest.raises(ValueError, match="fit"):
-        native.chain(np.zeros((3, 4, 4)), np.zeros(6), np.zeros(6))
+    for shapes in (((3, 4, 4), 6, 6), ((2, 4, 4), (1, 0), 1), ((1, 4, 4), 0, 0), ((34, 4, 4), 33, 33)):
+        with pytest.raises(ValueError, match="fit"):
+            native.chain(*map(np.zeros, shapes))
+
+
+@needs_kernel
+def test_numbers_that_change_the_arrays_meanwhile_change_nothing():
+    known, q = handle(chain_of(robokin.load("puma560"))), np.zeros((1, 6))
+
+    class Size:
+        def __float__(self):
+            q.shape = (6, 1)
+            return 1.0
+
+        __bool__ = None
+
+    with pytest.raises(ValueError, match="each joint"):
+        native.jacobian(known, q, Size(), False)
+    with pytest.raises(OverflowError):
+        native.jacobian(known, np.zeros(6), 10**400, False)
+    with pytest.raises(TypeError):
+        native.jacobian(known, np.zeros(6), 1.0, Size())
 
 
 @needs_kernel

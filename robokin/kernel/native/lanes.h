@@ -11,8 +11,13 @@
 
 #include "chain.h"
 
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
+
+#if FLT_EVAL_METHOD != 0 || defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__)
+#error "needs doubles rounded one by one"
+#endif
 
 #define LANES 8
 #define FARTHEST 1e5

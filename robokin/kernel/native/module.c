@@ -4,7 +4,7 @@
 */
 
 #define PY_SSIZE_T_CLEAN
-#define Py_LIMITED_API 0x030b0000
+#define Py_LIMITED_API 0x030a0000
 #define NPY_NO_DEPRECATED_API NPY_1_19_API_VERSION
 #define NPY_TARGET_VERSION NPY_1_19_API_VERSION
 
@@ -55,7 +55,7 @@ static PyArrayObject *doubles(PyObject *object, int least, PyObject **copy) {
     if (PyArray_TYPE(array) == NPY_DOUBLE && PyArray_IS_C_CONTIGUOUS(array) && PyArray_ISALIGNED(array) &&
         PyArray_ISNOTSWAPPED(array))
         return array;
-    *copy = PyArray_FROM_OTF(object, NPY_DOUBLE, NPY_ARRAY_IN_ARRAY);
+    *copy = PyArray_FROM_OTF(object, NPY_DOUBLE, NPY_ARRAY_IN_ARRAY | NPY_ARRAY_ENSUREARRAY);
     return (PyArrayObject *)*copy;
 }
 
@@ -75,7 +75,8 @@ static PyObject *chain(PyObject *self, PyObject *const *args, Py_ssize_t count) 
     if (!offsets)
         goto end;
     npy_intp n = PyArray_DIM(revolute, 0);
-    if (n > MOST_JOINTS || PyArray_DIM(offsets, 0) != n || PyArray_SIZE(C) != 16 * (n + 1)) {
+    if (n < 1 || n > MOST_JOINTS || PyArray_SIZE(revolute) != n || PyArray_SIZE(offsets) != n ||
+        PyArray_SIZE(C) != 16 * (n + 1)) {
         PyErr_SetString(PyExc_ValueError, "arrays of a chain do not fit each other");
         goto end;
     }
@@ -206,17 +207,18 @@ static PyObject *jacobian(PyObject *self, PyObject *const *args, Py_ssize_t coun
     PyArrayObject *q;
     PyObject *copy, *out = NULL;
     (void)self;
-    const Chain *known = count == 4 ? asked(args[0], args[1], &q, &copy) : NULL;
+    /* Numbers first: their methods may change the arrays. */
+    double size = count == 4 ? PyFloat_AsDouble(args[2]) : 0.0;
+    int tool = count == 4 && !PyErr_Occurred() ? PyObject_IsTrue(args[3]) : 0;
+    const Chain *known = count == 4 && !PyErr_Occurred() ? asked(args[0], args[1], &q, &copy) : NULL;
     if (!known) {
         if (!PyErr_Occurred())
             PyErr_SetString(PyExc_TypeError, "jacobian(chain, q, size, tool)");
         return NULL;
     }
-    double size = PyFloat_AsDouble(args[2]);
-    int tool = PyObject_IsTrue(args[3]);
     const npy_intp shape[] = {6, known->n};
     npy_intp m = rows(q);
-    out = PyErr_Occurred() ? NULL : empty(q, 2, shape);
+    out = empty(q, 2, shape);
     if (out) {
         double *to = PyArray_DATA((PyArrayObject *)out);
         const double *from = PyArray_DATA(q);
@@ -236,18 +238,18 @@ static PyObject *errors(PyObject *self, PyObject *const *args, Py_ssize_t count)
     PyArrayObject *q, *T = NULL;
     PyObject *copy, *copy_of_T = NULL, *error = NULL, *J = NULL, *both = NULL;
     (void)self;
-    const Chain *known = count == 4 ? asked(args[0], args[2], &q, &copy) : NULL;
+    double size = count == 4 ? PyFloat_AsDouble(args[3]) : 0.0;
+    const Chain *known = count == 4 && !PyErr_Occurred() ? asked(args[0], args[2], &q, &copy) : NULL;
     if (!known) {
         if (!PyErr_Occurred())
             PyErr_SetString(PyExc_TypeError, "errors(chain, T, q, size)");
         return NULL;
     }
     npy_intp m = rows(q);
-    double size = PyFloat_AsDouble(args[3]);
-    T = PyErr_Occurred() ? NULL : doubles(args[1], 2, &copy_of_T);
+    T = doubles(args[1], 2, &copy_of_T);
     if (!T)
         goto end;
-    if (PyArray_SIZE(T) != 16 * m) {
+    if (PyArray_SIZE(T) % 16 || PyArray_SIZE(T) / 16 != m) {
         PyErr_SetString(PyExc_ValueError, "expected a target for each row of joint values");
         goto end;
     }
@@ -316,7 +318,11 @@ static struct PyModuleDef module = {PyModuleDef_HEAD_INIT, "_native", "The nativ
                                     NULL, NULL, NULL, NULL};
 
 PyMODINIT_FUNC PyInit__native(void) {
-    import_array();
+    if (_import_array() < 0) {
+        PyErr_Clear();
+        PyErr_SetString(PyExc_ImportError, "the native kernel needs another numpy");
+        return NULL;
+    }
     lanes = base;
 #ifdef ROBOKIN_AVX2
     __builtin_cpu_init();
