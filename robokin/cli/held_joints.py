@@ -60,7 +60,7 @@ def _joint(name: str, robot: Robot) -> int:
         listed = " and ".join(f"joint {i + 1}" for i in found)
         raise InputError(f"{OPTION}: '{name}' names {listed}, expected the number of one of them")
     if name in [row.name for row in robot.rows if row.moves] and not name.isdecimal():
-        raise InputError(f"{OPTION}: joint '{name}' follows others, expected {_listed(robot)}: what moves it")
+        raise InputError(f"{OPTION}: joint '{name}' follows others, expected one of {_listed(robot)}")
     known = [own for own in names if not own.isdecimal()]
     expected = f", expected {_listed(robot)}"
     raise InputError(f"{OPTION}: {robot.name} has no joint '{name}'{did_you_mean(name, known) or expected}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 from robokin.arrays import Array, Flags, Index
@@ -188,6 +189,11 @@ class UnmadeResult(Result):
         return Result.__reduce_ex__(self, protocol)
 
 
+def _at(known: list[Any], i: int) -> Any:
+    """What is known of target i."""
+    return known[i]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class BatchResult(Answer):
     """The answers for m targets as arrays, padded with NaN; `result[i]` is the answer for target i.
@@ -210,6 +216,14 @@ class BatchResult(Answer):
     reason: Callable[[int], str | None]
     """Says why a target has no solution."""
     question: Question | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled with the answers for all targets, which are made for it."""
+        answers = [self.single(i) for i in range(len(self))]
+        reasons = [None if self.count[i] else self.reason(i) for i in range(len(self))]
+        arrays = (self.q, self.count, self.position_error, self.angle_error, self.within_limits)
+        made: tuple[Any, ...] = (partial(_at, answers), partial(list, self.branches()), partial(_at, reasons))
+        return type(self), (*arrays, self.complete, self.method, *made, self.question)
 
     def __len__(self) -> int:
         """The number of targets."""

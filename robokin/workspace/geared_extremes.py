@@ -33,7 +33,7 @@ STEPS = 80
 """Newton steps at most."""
 
 FLAT, STILL = 1e-9, 1e-14
-"""Least curvature [size²/rad²] that a step goes by, and a slope [size²/rad] that is rounding."""
+"""Least curvature [size²/rad²] that a step goes by, and a slope [size²/rad] or step [rad | size] that is rounding."""
 
 TOUCHING = 1e-12
 """Room to a limit [rad | size] that is none."""
@@ -169,7 +169,8 @@ def _stopped(geared: _Geared, q: Array, step: Array, held: Flags) -> Array:
     G, h = geared.limits.G, geared.limits.h
     toward = step @ G.T
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where((toward > 0.0) & ~held, np.maximum(h - q @ G.T, 0.0) / toward, np.inf)
+        # What goes across a limit by no more than rounding is not stopped by it, as along one without a slope across.
+        share = np.where((toward > STILL) & ~held, np.maximum(h - q @ G.T, 0.0) / toward, np.inf)
     moved = q + np.minimum(np.min(share, axis=1, initial=np.inf), 1.0)[:, None] * step
     return np.asarray(np.where(geared.full, moved, np.clip(moved, geared.low, geared.high)))
 

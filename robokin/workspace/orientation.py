@@ -155,7 +155,10 @@ def notes_of_turns(space: Space, found: Dexterity | None) -> list[str]:
 def expect_turnable(space: Space) -> None:
     """Raise InputError for a robot whose orientations could only be searched for: no size of theirs would be sound."""
     group, robot = group_of(space), space.robot
-    if group in TASKS and isinstance(robot, CoupledRobot) and not tried_by_forms(space, TASKS[group]):
+    if not isinstance(robot, CoupledRobot):
+        return
+    known = tried_by_forms(space, TASKS[group]) if group in TASKS else robot.drive.invertible
+    if not known:
         raise InputError(
             f"dextrous: {robot.coupled}: with which orientations a place is reached could only be searched for, "
             "expected an arm without joints that follow others or to spare"

@@ -85,7 +85,7 @@ def test_what_cannot_be_sound_is_refused_by_its_option(call, paths, write, tmp_p
         "  - {name: dip", "  - {name: mid, type: R, a: 20, limits: [0, 60]}\n  - {name: dip"
     )
     refused(call("workspace", write(spare), "--dextrous", *FEW), "dextrous", "joint dip hangs on pip")
-    assert call("workspace", paths["finger"], "--dextrous", *FEW).status == 0
+    refused(call("workspace", paths["finger"], "--dextrous", *FEW), "dextrous", "joint dip hangs on pip")
     out = tmp_path / "a.csv"
     grid = call("workspace", paths["pendant"], "--sampling", "grid", "--samples", "100", "--output", out)
     refused(grid, "sampling", "found 'grid', expected 'sobol' or 'random'")

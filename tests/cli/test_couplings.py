@@ -210,7 +210,7 @@ def test_tables_are_marked_by_what_hangs_on_what_too(call, write, tmp_path, chan
 @pytest.mark.parametrize(
     ("command", "said"),
     [
-        (("ik", "--xyz", "60,0,-20", "--hold", "dip=3"), "joint 'dip' follows others, expected q1 to q3"),
+        (("ik", "--xyz", "60,0,-20", "--hold", "dip=3"), "joint 'dip' follows others, expected one of q1 to q3"),
         (("ik", "--xyz", "60,0,-20", "--explain"), "joint dip hangs on pip"),
     ],
 )

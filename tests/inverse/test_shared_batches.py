@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -50,3 +53,16 @@ def test_cores_are_a_whole_number(cores):
         robokin.solve_ik(robot, np.tile(np.eye(4), (3, 1, 1)), cores=cores)
     with pytest.raises(InputError, match="cores"):
         robokin.forward_kinematics(robot, np.zeros((3, 6)), cores=cores)
+
+
+@pytest.mark.parametrize("asked", [{}, {"turns": True}, {"hold": {2: 0.3}}, {"most": 2}], ids=str)
+def test_a_batch_survives_pickles_and_copies(asked, rng):
+    robot = robokin.load("puma560")
+    T = robokin.forward_kinematics(robot, np.vstack([np.zeros(6), rng.uniform(-1, 1, (2, 6))]))
+    T[2, :3, 3] += 10.0
+    batch = robokin.solve_ik(robot, T, **asked)
+    for other in (pickle.loads(pickle.dumps(batch)), copy.deepcopy(batch)):
+        assert np.array_equal(batch.q, other.q, equal_nan=True)
+        assert batch.branches() == other.branches()
+        assert batch.reason(2) == other.reason(2)
+        assert [one.record() for one in batch] == [one.record() for one in other]

@@ -11,6 +11,7 @@ from workspace.coupled_arms import FREE, P, R, adds, arm, drawn_arm, follows, pl
 import robokin
 from robokin.model import Joint
 from robokin.model.coupled_robot import driven
+from robokin.model.graph import Coupling
 from robokin.spatial import rotation_transform, translation_transform
 from robokin.workspace.extremes import extent
 from robokin.workspace.geared_starts import spread_to_limits
@@ -323,3 +324,25 @@ def test_orientations_of_a_pendant_arm_are_those_within_both_kinds_of_limits():
     found = robokin.analyse_workspace(robot, samples=2048, dextrous=True, cores=1)
     assert found.dexterity.group == "SO(2)"
     assert 0.0 < found.dexterity.mean < 1.0
+
+
+def palletizer():
+    """An arm whose tool stays level, with its first joint's limits a quarter of a turn to either side."""
+    rows = [
+        Joint("j1", R, d=0.1, alpha=np.pi / 2, limits=(-np.pi / 2, np.pi / 2)),
+        Joint("j2", R, a=0.2, limits=(np.radians(-60), np.radians(140))),
+        Joint("j3", R, a=0.15, limits=(np.radians(-120), np.radians(20))),
+        Joint("j4", R, a=0.06, limits=(np.radians(-100), np.radians(100))),
+    ]
+    return arm(rows, Coupling("j4", (("j2", -1.0), ("j3", -1.0)), 0.0, False))
+
+
+def test_a_limit_at_which_nothing_changes_stops_no_descent():
+    """At j1 = 90° y has no slope in j1, and steps of the other joints were cut off by its rounding."""
+    found = robokin.analyse_workspace(palletizer(), samples=2000, cores=1)
+    np.testing.assert_allclose([found.extent.low[1], found.extent.high[1]], [-0.41, 0.41], rtol=0, atol=1e-12)
+
+
+def test_how_often_orientations_of_followers_come_is_not_guessed():
+    with pytest.raises(robokin.InputError, match="dextrous: joint j4 hangs on j2"):
+        robokin.analyse_workspace(palletizer(), samples=1000, dextrous=True)
