@@ -151,27 +151,28 @@ static npy_intp rows(PyArrayObject *q) {
     return m;
 }
 
-static PyObject *pose(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+/* The frames that joints start from and the tool's, or the tool's alone. */
+static PyObject *led_to(PyObject *const *args, Py_ssize_t count, int every) {
     PyArrayObject *q;
     PyObject *copy, *out = NULL;
-    (void)self;
     const Chain *known = count == 2 ? asked(args[0], args[1], &q, &copy) : NULL;
     if (!known) {
         if (!PyErr_Occurred())
-            PyErr_SetString(PyExc_TypeError, "pose(chain, q)");
+            PyErr_SetString(PyExc_TypeError, "expected a chain and joint values");
         return NULL;
     }
-    const npy_intp shape[] = {4, 4};
+    const npy_intp shape[] = {known->n + 1, 4, 4};
     npy_intp m = rows(q);
-    out = empty(q, 2, shape);
+    out = every ? empty(q, 3, shape) : empty(q, 2, shape + 1);
     if (out) {
+        void (*run)(const Chain *, const double *, ptrdiff_t, double *) = every ? lanes.frames : lanes.poses;
         double *to = PyArray_DATA((PyArrayObject *)out);
         const double *from = PyArray_DATA(q);
         if (m < LONG) {
-            lanes.poses(known, from, m, to);
+            run(known, from, m, to);
         } else {
             Py_BEGIN_ALLOW_THREADS
-            lanes.poses(known, from, m, to);
+            run(known, from, m, to);
             Py_END_ALLOW_THREADS
         }
     }
@@ -179,28 +180,14 @@ static PyObject *pose(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     return out;
 }
 
-static PyObject *frames(PyObject *self, PyObject *const *args, Py_ssize_t count) {
-    PyArrayObject *q;
-    PyObject *copy, *out = NULL;
+static PyObject *pose(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     (void)self;
-    const Chain *known = count == 2 ? asked(args[0], args[1], &q, &copy) : NULL;
-    if (!known) {
-        if (!PyErr_Occurred())
-            PyErr_SetString(PyExc_TypeError, "frames(chain, q)");
-        return NULL;
-    }
-    const npy_intp shape[] = {known->n + 1, 4, 4};
-    npy_intp m = rows(q);
-    out = empty(q, 3, shape);
-    if (out) {
-        double *to = PyArray_DATA((PyArrayObject *)out);
-        const double *from = PyArray_DATA(q);
-        Py_BEGIN_ALLOW_THREADS
-        lanes.frames(known, from, m, to);
-        Py_END_ALLOW_THREADS
-    }
-    Py_XDECREF(copy);
-    return out;
+    return led_to(args, count, 0);
+}
+
+static PyObject *frames(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    (void)self;
+    return led_to(args, count, 1);
 }
 
 static PyObject *jacobian(PyObject *self, PyObject *const *args, Py_ssize_t count) {
