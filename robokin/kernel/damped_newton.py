@@ -1,5 +1,9 @@
 """Damped Newton steps for many configurations at once, within joint limits: what all descents are made of.
 
+Two loops, one for each way to use a step. `brought_down` takes every step and keeps of each row what was best: its
+damping hangs on the error alone, and it may leap out of a valley. `led_down` tries steps and takes those that lead
+down: its damping, or the radius that steps keep within, follows their success, and where it ends is a minimum.
+
 Least squares. With an error e (what a target asks for less what is there) and its Jacobian J the step
 dq = (JᵀJ + λ I)⁻¹ Jᵀe lowers |e|² (K. Levenberg, Quart. Appl. Math. 2, 1944; D. Marquardt, SIAM J. 11, 1963); λ about
 as great as |e|² makes it cautious far off and Newton's near the end, singular or not (T. Sugihara,
@@ -14,6 +18,7 @@ Limits. A joint at a limit that the way down pushes outwards is held, and a step
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,6 +29,39 @@ Errors = Callable[[Index, Array], tuple[Array, Array]]
 
 Step = Callable[[Index, Array, Array, Array], Array]
 """Of some rows (k,) at values x (k, n), with errors (k, m) and Jacobians (k, m, n): steps (k, n)."""
+
+Known = tuple[Array, ...]
+"""What is known at the values of rows: what steps are made of and judged by, each array with the rows on one axis."""
+
+
+class Trial(NamedTuple):
+    """Steps that are tried: where they lead, what is trusted of them, which rows go on, and what judges them.
+
+    x: as the values; trust, notes: arrays of (s,); on: (s,).
+    """
+
+    x: Array
+    trust: Known
+    on: Flags | None = None
+    notes: tuple[Any, ...] = ()
+
+
+class Judged(NamedTuple):
+    """Which trials are taken (s,), what is trusted of the next ones, (s,) each, and which rows have arrived (s,)."""
+
+    taken: Flags
+    trust: Known
+    arrived: Flags | None = None
+
+
+Look = Callable[[Index, Array], Known]
+"""Of some rows (k,) at their values: what is known there."""
+
+Try = Callable[[Index, Array, Known, Known], Trial]
+"""Of some rows (k,) at their values, with what is known there and what is trusted: the steps to try."""
+
+Judge = Callable[[Array, Known, Known, Trial], Judged]
+"""Of rows at their values, with what is known there and where the trials lead: what becomes of them."""
 
 
 def brought_down(
@@ -54,6 +92,49 @@ def brought_down(
         if not len(rows):
             break
     return best, left
+
+
+def led_down(
+    look: Look, step: Try, judge: Judge, x: Array, trust: Known, *, steps: int, told: int, axis: int = 0
+) -> tuple[Array, ...]:
+    """Values to which some steps lead from x that are taken only where the judge says so, and what is known there.
+
+    axis: 0 or -1, that of the rows in all arrays of `look` and in x; trust: what the first steps are made with, arrays
+    of (s,); told: how many of the arrays that `look` gives are given back, the first ones. Where a row ends does not
+    depend on the others: what look, step and judge tell of it must not.
+    """
+    rows, here, x = np.arange(x.shape[axis]), look(np.arange(x.shape[axis]), x), x.copy()
+    end = x.copy(), *(part.copy() for part in here[:told])
+    over = np.zeros(len(rows), dtype=bool)
+
+    def at(which: Index | Flags) -> Any:
+        return (..., which) if axis else which
+
+    for count in range(steps):
+        trial = step(rows, x, here, trust)
+        if trial.on is not None:
+            over |= ~trial.on
+            if over.all():
+                break
+        there = look(rows, trial.x)
+        taken, trust, arrived = judge(x, here, there, trial)
+        taken &= ~over
+        for new, old in zip((trial.x, *there), (x, *here), strict=True):
+            np.copyto(old, new, where=taken if axis else taken.reshape(-1, *(1,) * (old.ndim - 1)))
+        if arrived is not None:
+            over |= arrived
+            if over.all():
+                break
+        if 3 * np.count_nonzero(over) > len(over) and count < steps - 1:
+            # Those that have arrived cost no more time.
+            for whole, part in zip(end, (x, *here), strict=False):
+                whole[at(rows)] = part
+            on = ~over
+            x, here = x[at(on)], tuple(part[at(on)] for part in here)
+            rows, over, trust = rows[on], over[on], tuple(part[on] for part in trust)
+    for whole, part in zip(end, (x, *here), strict=False):
+        whole[at(rows)] = part
+    return end
 
 
 def held_at(x: Array, low: Array, high: Array, uphill: Array) -> Flags:

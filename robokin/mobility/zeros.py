@@ -112,7 +112,8 @@ def zeros_on_sphere(
 ) -> tuple[Array, Array, Array]:
     """Zeros x, y on |x| = radius near by, and what g and the regular equations leave there (N,).
 
-    damped: (N,) which steps are.
+    damped: (N,) which steps are. Not `damped_newton.brought_down`: each step solves the regular equations beside, and
+    a zero counts where the steps end, not where the constraints were least, which is at a smaller radius.
     """
     x, y = x.copy(), y.copy()
     size = np.full(len(x), np.inf)

@@ -307,7 +307,11 @@ def _outer(space: Space) -> Array:
 
 
 class _Pool:
-    """Searches that go on together, each for its own point and from its own start."""
+    """Searches that go on together, each for its own point and from its own start.
+
+    Not `damped_newton.led_down`, though steps are taken and damped alike: searches come while others go on, and end
+    when another one reaches their point.
+    """
 
     def __init__(self, descent: Descent, points: Array) -> None:
         self.descent, self.points = descent, points

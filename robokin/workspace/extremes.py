@@ -15,11 +15,11 @@ with w = 0 for a bound along ±g, and g = 0, w = ±1 for the least and the great
 
    least at one angle, or at a limit; a sliding joint makes it a parabola. A whole sweep costs no more than one forward
    kinematics, ends at the limits exactly, and leaps over the hills between the valleys of one joint.
-3. Newton's method with the exact Hessian, in a region of trust, on the joints that are not held by a limit: to
-   rounding. With J's column i ∂p/∂q_i and i ≤ j, ∂²p/∂q_i∂q_j = z_i × J_j, and 0 where joint i slides.
+3. Newton's method with the exact Hessian, in a region of trust (trusted_steps.py), on the joints that are not held by
+   a limit: to rounding. With J's column i ∂p/∂q_i and i ≤ j, ∂²p/∂q_i∂q_j = z_i × J_j, and 0 where joint i slides.
 
 The sweeps are coordinate descent, whose limit points are stationary (D. P. Bertsekas, Nonlinear Programming, 2nd ed.
-1999, prop. 2.7.1); the step is that of section 1.4 of the same book, negative curvatures turned over.
+1999, prop. 2.7.1).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from robokin.arrays import Array, Flags
+from robokin.arrays import Array, Flags, Index
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import held_at
 from robokin.kernel.facts import fact
@@ -38,6 +38,7 @@ from robokin.workspace.goals import Goals, derivatives
 from robokin.workspace.sampling import joint_values, moving_chain, positions
 from robokin.workspace.sizes import Extent
 from robokin.workspace.space import TURN, Space
+from robokin.workspace.trusted_steps import Freed, polished
 
 SAMPLES = 1 << 14
 """Configurations that starts are chosen from."""
@@ -62,13 +63,6 @@ POLISHED = 16
 
 STEPS = 60
 """Newton steps at most: some five are needed near a regular extreme, more at a limit or on a flat one."""
-
-FLAT = 1e-9
-"""Least curvature [size²/rad²] that a step goes by: a flat direction, along which only rounding has a slope, is not
-followed far."""
-
-STILL = 1e-14
-"""A slope [size/rad] that is rounding."""
 
 NOTHING = 1e-15
 """An amplitude [size²] of A cos θ + B sin θ that is rounding: the angle stays what it is."""
@@ -159,7 +153,7 @@ def _best(space: Space, eight: Goals, seed: int) -> Array:
     order = np.argsort(f.reshape(8, each), axis=1, kind="stable")[:, :POLISHED]
     chosen = (order + each * np.arange(8)[:, None]).ravel()
     q, goals = q[chosen], goals.taken(chosen)
-    f = _polish(box, goals, q)
+    q, f = _polish(box, goals, q)
     best: Array = q[np.argmin(f.reshape(8, POLISHED), axis=1) + POLISHED * np.arange(8)] * unit
     low, high, full = (whole[list(space.moving)] for whole in (space.low, space.high, space.full))
     return np.where(full, low + np.mod(best - low, TURN), np.clip(best, low, high))
@@ -247,34 +241,23 @@ def _best_length(box: _Box, i: int, w: Array, h: Array, s: Array) -> Array:
     return best
 
 
-def _polish(box: _Box, goals: Goals, q: Array) -> Array:
-    """Newton's method, in place, on q: (m, n); the functions' values (m,) at its end."""
-    p, gradient, H = derivatives(box.chain, goals, q)
-    f = goals.values(p)
-    radius = np.full(len(q), 0.5)
-    for _ in range(STEPS):
-        held = ~box.full & held_at(q, box.low, box.high, -gradient)
-        gradient = np.where(held, 0.0, gradient)
-        going = (np.max(np.abs(gradient), axis=1) > STILL) & (radius > STILL)
-        if not np.any(going):
-            break
-        H = np.where(held[:, :, None] | held[:, None, :], np.eye(q.shape[1]), H)
-        curvatures, V = np.linalg.eigh(H)
-        along = np.einsum("mji,mj->mi", V, gradient) / np.maximum(np.abs(curvatures), FLAT)
-        step = -np.einsum("mij,mj->mi", V, along)
-        step[held] = 0.0
-        length = np.linalg.norm(step, axis=1)
-        step *= np.minimum(1.0, radius / np.maximum(length, 1e-300))[:, None]
-        q_new = _inside(box, q, step)
-        p, gradient_new, H_new = derivatives(box.chain, goals, q_new)
-        f_new = goals.values(p)
-        better = going & (f_new < f)
-        length = np.minimum(length, radius)
-        radius = np.where(better, np.minimum(2.0 * np.maximum(radius, length), 1.0), 0.25 * length)
-        q[better], f[better] = q_new[better], f_new[better]
-        gradient = np.where(better[:, None], gradient_new, gradient)
-        H = np.where(better[:, None, None], H_new, H)
-    return f
+def _polish(box: _Box, goals: Goals, q: Array) -> tuple[Array, Array]:
+    """Newton's method from q: (m, n): where it ends, and the functions' values (m,) there."""
+
+    def derived(rows: Index, x: Array) -> tuple[Array, Array, Array]:
+        some = goals.taken(rows)
+        p, gradient, H = derivatives(box.chain, some, x)
+        return some.values(p), gradient, H
+
+    def free(x: Array, gradient: Array, H: Array) -> Freed:
+        held = ~box.full & held_at(x, box.low, box.high, -gradient)
+        one = np.eye(x.shape[1])
+        # In what is known there, so that shorter steps from the same place leave these joints alone, too.
+        np.copyto(H, one, where=held[:, :, None] | held[:, None, :])
+        np.copyto(gradient, 0.0, where=held)
+        return Freed(gradient, H, np.where(held[:, :, None], 0.0, one), held)
+
+    return polished(derived, free, lambda x, step, _: _inside(box, x, step), q, STEPS)
 
 
 def _inside(box: _Box, q: Array, step: Array) -> Array:

@@ -2,19 +2,20 @@
 
 The same functions as in extremes.py. Starts are the best of an even sequence, of its like with variables at limits, and
 of corners. One variable after the other is then tried at values all over the range that the others leave it, and
-Newton's method with the exact Hessian goes on, in a region of trust: on the plane of the limits that stand in the way,
-box and cuts alike, whose normals are projected out of slope and Hessian, and no step goes beyond the first limit in its
-way (J. Nocedal and S. J. Wright, Numerical Optimization, 2nd ed. 2006, sections 16.5 and 16.7).
+Newton's method with the exact Hessian goes on, in a region of trust (trusted_steps.py): on the plane of the limits that
+stand in the way, box and cuts alike, whose normals are projected out of slope and Hessian, and no step goes beyond the
+first limit in its way (J. Nocedal and S. J. Wright, Numerical Optimization, 2nd ed. 2006, sections 16.5 and 16.7).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
-from robokin.arrays import Array, Flags
+from robokin.arrays import Array, Flags, Index
 from robokin.kernel.chain import Chain
 from robokin.kernel.frames import frames
 from robokin.workspace.geared_starts import spread_to_limits
@@ -22,6 +23,7 @@ from robokin.workspace.goals import Goals, derivatives
 from robokin.workspace.half_spaces import HalfSpaces
 from robokin.workspace.sampling import moving_chain, moving_cuts, moving_gears
 from robokin.workspace.space import TURN, Space
+from robokin.workspace.trusted_steps import STILL, Freed, polished
 
 STARTS = 32
 """Starts for each function from the inside, and as many from the limits."""
@@ -31,9 +33,6 @@ SWEEPS, TRIED = 3, 33
 
 STEPS = 80
 """Newton steps at most."""
-
-FLAT, STILL = 1e-9, 1e-14
-"""Least curvature [size²/rad²] that a step goes by, and a slope [size²/rad] or step [rad | size] that is rounding."""
 
 TOUCHING = 1e-12
 """Room to a limit [rad | size] that is none."""
@@ -75,7 +74,7 @@ def geared_best(space: Space, goals: Goals, samples: int, seed: int = 0) -> Arra
     goals = goals.taken(np.repeat(np.arange(k), each))
     for _ in range(SWEEPS):
         _try_all_over(geared, goals, q)
-    f = _polished(geared, goals, q)
+    q, f = _polished(geared, goals, q)
     best = q[np.argmin(f.reshape(k, each), axis=1) + each * np.arange(k)]
     # Within the limits to the last digit.
     best = np.where(geared.full, geared.low + np.mod(best - geared.low, TURN), np.clip(best, geared.low, geared.high))
@@ -116,31 +115,18 @@ def _try_all_over(geared: _Geared, goals: Goals, q: Array) -> None:
         q[:] = tried[np.argmin(f, axis=0), np.arange(m)]
 
 
-def _polished(geared: _Geared, goals: Goals, q: Array) -> Array:
-    """Newton's method, in place, on q: (m, n); the functions' values (m,) at its end."""
-    f, slope, H = _derivatives(geared, goals, q)
-    radius = np.full(len(q), 0.5)
-    for _ in range(STEPS):
-        P, touched = _free_plane(geared, q, slope)
-        slope_in = np.einsum("mij,mj->mi", P, slope)
-        going = (np.max(np.abs(slope_in), axis=1) > STILL) & (radius > STILL)
-        if not np.any(going):
-            break
+def _polished(geared: _Geared, goals: Goals, q: Array) -> tuple[Array, Array]:
+    """Newton's method from q: (m, n): where it ends, and the functions' values (m,) there."""
+
+    def derived(rows: Index, x: Array) -> tuple[Array, Array, Array]:
+        return _derivatives(geared, goals.taken(rows), x)
+
+    def free(x: Array, slope: Array, H: Array) -> Freed:
+        P, held = _free_plane(geared, x, slope)
         flat = P @ H @ P
-        curvatures, V = np.linalg.eigh(0.5 * (flat + flat.swapaxes(1, 2)))
-        along = np.einsum("mji,mj->mi", V, slope_in) / np.maximum(np.abs(curvatures), FLAT)
-        step = -np.einsum("mij,mj->mi", P, np.einsum("mij,mj->mi", V, along))
-        length = np.linalg.norm(step, axis=1)
-        step *= np.minimum(1.0, radius / np.maximum(length, 1e-300))[:, None]
-        tried = _stopped(geared, q, step, touched)
-        f_new, slope_new, H_new = _derivatives(geared, goals, tried)
-        better = going & (f_new < f)
-        length = np.minimum(length, radius)
-        radius = np.where(better, np.minimum(2.0 * np.maximum(radius, length), 1.0), 0.25 * length)
-        q[better], f[better] = tried[better], f_new[better]
-        slope = np.where(better[:, None], slope_new, slope)
-        H = np.where(better[:, None, None], H_new, H)
-    return f
+        return Freed(np.einsum("mij,mj->mi", P, slope), 0.5 * (flat + flat.swapaxes(1, 2)), P, held)
+
+    return polished(derived, free, partial(_stopped, geared), q, STEPS)
 
 
 def _free_plane(geared: _Geared, q: Array, slope: Array) -> tuple[Array, Flags]:

@@ -3,8 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from robokin.kernel.damped_newton import brought_down, held_at, limited, singular_step, solved
+from robokin.kernel.damped_newton import (
+    Judged,
+    Trial,
+    brought_down,
+    held_at,
+    led_down,
+    limited,
+    singular_step,
+    solved,
+)
 
 
 def circle(rows, x):
@@ -45,6 +55,58 @@ def test_a_row_without_numbers_disturbs_none(rng):
     x = rng.uniform(0.5, 1.0, (3, 2))
     x[1] = np.nan
     assert np.allclose(down(x)[0][[0, 2]], np.sqrt(0.5))
+
+
+def led(x, axis=0, steps=200, arrive=1e-12):
+    """Gradient steps on Rosenbrock's function of points x (k, 2), or (2, k), their lengths following their success."""
+
+    def look(rows, x):
+        a, b = x if axis else x.T
+        slope = np.stack([2.0 * (a - 1.0) - 40.0 * a * (b - a * a), 20.0 * (b - a * a)], axis=0 if axis else 1)
+        return (a - 1.0) ** 2 + 10.0 * (b - a * a) ** 2, slope
+
+    def step(rows, x, here, trust):
+        reach = trust[0] if axis else trust[0][:, None]
+        return Trial(x - reach * here[1], trust, here[0] > arrive)
+
+    def judge(x, here, there, trial):
+        better = there[0] < here[0]
+        return Judged(better, (np.where(better, 1.5, 0.3) * trial.trust[0],), there[0] < 0.1 * arrive)
+
+    return led_down(look, step, judge, x, (np.full(x.shape[axis], 0.1),), steps=steps, told=2, axis=axis)
+
+
+@pytest.mark.parametrize("axis", [0, -1])
+def test_trials_are_taken_that_lead_down_and_rows_are_alone(rng, axis):
+    x = rng.uniform(-2.0, 2.0, (2, 40) if axis else (40, 2))
+    x[..., 0] = 1.0
+    before = x.copy()
+    ends, f, slopes = led(x, axis)
+    assert np.array_equal(x, before)
+    start = led(x, axis, steps=0)
+    assert np.array_equal(start[0], x) and np.all(f <= start[1])
+    again = led(ends, axis, steps=0)
+    assert np.array_equal(again[1], f) and np.array_equal(again[2], slopes)
+    some = (slice(None), slice(7, 8)) if axis else slice(7, 8)
+    for whole, alone in zip((ends, slopes), led(x[some], axis)[::2], strict=True):
+        assert np.array_equal(whole[some], alone)
+    # More steps never lead up again, and in the end all arrive.
+    assert np.all(led(x, axis, steps=300)[1] <= f)
+    assert np.max(led(x, axis, steps=5000)[1]) <= 1e-12
+
+
+def test_rows_first_and_rows_last_are_the_same(rng):
+    x = rng.uniform(-2.0, 2.0, (30, 2))
+    for rows, columns in zip(led(x), led(np.ascontiguousarray(x.T), -1), strict=True):
+        assert np.array_equal(rows, columns.T)
+
+
+def test_no_rows_and_a_row_without_numbers_end_nothing(rng):
+    assert [part.shape for part in led(np.zeros((0, 2)))] == [(0, 2), (0,), (0, 2)]
+    x = rng.uniform(0.5, 1.0, (3, 2))
+    x[1] = np.nan
+    ends, f, _ = led(x, steps=5000)
+    assert np.isnan(ends[1]).all() and np.max(f[[0, 2]]) <= 1e-12
 
 
 def test_held_and_limited():

@@ -21,7 +21,7 @@ from robokin.arrays import Array, Flags, Index
 from robokin.inverse.numeric.closing import CAUTION, DONE, step_within
 from robokin.inverse.numeric.driven_tips import DrivenTips, errors_and_slopes, tip_errors
 from robokin.inverse.numeric.initial_guesses import between
-from robokin.kernel.damped_newton import brought_down, held_at, singular_step
+from robokin.kernel.damped_newton import Judged, Known, Trial, brought_down, held_at, led_down, singular_step
 
 DRAWN = 2048
 """Configurations drawn for each round of starts."""
@@ -216,21 +216,21 @@ def brought_nearest(tips: DrivenTips, T: Array, u: Array) -> DrivenEnds:
     The damping grows where a step leads away and shrinks where it does not (D. Marquardt, SIAM J. 11, 1963).
     """
     low, high = (tips.limits / tips.scale[:, None]).T
-    x, damping = np.clip(u / tips.scale, low, high), np.full(len(u), 1e-2)
-    e, J = errors_and_slopes(tips, T, x * tips.scale)
-    off = np.sum(e * e, axis=1)
-    for _ in range(NEAREST_STEPS):
+
+    def look(rows: Index, x: Array) -> Known:
+        e, J = errors_and_slopes(tips, T[rows], x * tips.scale)
+        return np.sum(e * e, axis=1), e, J
+
+    def step(rows: Index, x: Array, here: Known, trust: Known) -> Trial:
+        off, e, J = here
         held = held_at(x, low, high, np.einsum("sij,si->sj", J, e))
-        dx = singular_step(np.where(held[:, None], 0.0, J), e, damping * np.minimum(off, 1.0))
-        there = np.clip(x + _limited_turns(tips, np.where(held, 0.0, dx)), low, high)
-        e_there, J_there = errors_and_slopes(tips, T, there * tips.scale)
-        off_there = np.sum(e_there * e_there, axis=1)
-        better = off_there < off
-        x[better], e[better], J[better], off[better] = (
-            there[better],
-            e_there[better],
-            J_there[better],
-            off_there[better],
-        )
-        damping = np.where(better, np.maximum(0.2 * damping, 1e-9), np.minimum(5.0 * damping, 1e6))
+        dx = singular_step(np.where(held[:, None], 0.0, J), e, trust[0] * np.minimum(off, 1.0))
+        return Trial(np.clip(x + _limited_turns(tips, np.where(held, 0.0, dx)), low, high), trust)
+
+    def judge(x: Array, here: Known, there: Known, trial: Trial) -> Judged:
+        better, damping = there[0] < here[0], trial.trust[0]
+        return Judged(better, (np.where(better, np.maximum(0.2 * damping, 1e-9), np.minimum(5.0 * damping, 1e6)),))
+
+    start, trust = np.clip(u / tips.scale, low, high), (np.full(len(u), 1e-2),)
+    (x,) = led_down(look, step, judge, start, trust, steps=NEAREST_STEPS, told=0)
     return ended(tips, T, _on_limits(x * tips.scale, tips.limits))

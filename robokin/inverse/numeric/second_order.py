@@ -34,9 +34,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from robokin.arrays import Array, Flags
+from robokin.arrays import Array, Flags, Index
 from robokin.kernel.chain import Chain
-from robokin.kernel.damped_newton import held_at, solved
+from robokin.kernel.damped_newton import Judged, Known, Trial, held_at, led_down, solved
 from robokin.kernel.geometric_jacobian import Motion, crossed, motion
 
 STEP = 0.6
@@ -72,13 +72,13 @@ HOPELESS = 1e20
 
 
 class Slope(NamedTuple):
-    """f (s,), its gradient (n, s) and Hessian (n, n, s); its parts ½|p - t|² [size²] and 1 - cos θ, each (s,)."""
+    """f's parts ½|p - t|² [size²] and 1 - cos θ, each (s,), f (s,), its gradient (n, s) and Hessian (n, n, s)."""
 
+    place: Array
+    turn: Array
     f: Array
     gradient: Array
     hessian: Array
-    place: Array
-    turn: Array
 
 
 def slope(chain: Chain, T: Array, x: Array, size: float, weight: Array) -> Slope:
@@ -102,7 +102,7 @@ def slope(chain: Chain, T: Array, x: Array, size: float, weight: Array) -> Slope
             H += left[:, None, row] * right[:, row]
     for i in range(1, chain.n):
         H[i, :i] = H[:i, i]
-    return Slope(place + weight * turn, _dot(J, e) + weight * _dot(w, a), H, place, turn)
+    return Slope(place, turn, place + weight * turn, _dot(J, e) + weight * _dot(w, a), H)
 
 
 def go_down(
@@ -123,42 +123,35 @@ def go_down(
     step [rad | size] that ends the way; least: the least λ.
     """
     low, high = limits
-    x = np.minimum(np.maximum(x, low), high)
-    here = slope(chain, T, x, size, weight)
-    damping = CAUTION * weight + least
-    growth = np.full(len(damping), 4.0)
-    done = np.zeros(len(damping), dtype=bool)
-    end, rows = (x.copy(), here.place.copy(), here.turn.copy()), np.arange(len(damping))
-    for step in range(steps):
-        held = held_at(x, low, high, -here.gradient)
+
+    def look(rows: Index, x: Array) -> Known:
+        return slope(chain, _of(T, rows), x, size, _of(weight, rows))
+
+    def step(rows: Index, x: Array, here: Known, trust: Known) -> Trial:
+        bounds = _of(low, rows), _of(high, rows)
+        known, damping, growth = Slope(*here), *trust
+        held = held_at(x, *bounds, -known.gradient)
         unit = np.where(chain.revolute[:, None], 1.0, np.maximum(np.abs(x), 1.0))
-        wish, damping, definite = _step(here, held, damping, weight, unit)
-        ahead = np.minimum(np.maximum(x + wish, low), high)
-        dx = ahead - x
-        there = slope(chain, T, ahead, size, weight)
-        foretold = -_sum(dx * (here.gradient + 0.5 * _product(here.hessian, dx)))
-        noise = NOISE * here.f + np.finfo(float).tiny
-        ratio = (here.f - there.f + noise) / (np.maximum(foretold, 0.0) + noise)
-        take = definite & (there.f <= here.f + noise) & (ratio > 1e-4) & ~done
+        wish, damping, definite = _step(known, held, damping, _of(weight, rows), unit)
+        ahead = np.minimum(np.maximum(x + wish, bounds[0]), bounds[1])
+        return Trial(ahead, (damping, growth), notes=(_greatest(wish), definite))
+
+    def judge(x: Array, here: Known, there: Known, trial: Trial) -> Judged:
+        now, after, dx = Slope(*here), Slope(*there), trial.x - x
+        (damping, growth), (longest, definite) = trial.trust, trial.notes
+        foretold = -_sum(dx * (now.gradient + 0.5 * _product(now.hessian, dx)))
+        noise = NOISE * now.f + np.finfo(float).tiny
+        ratio = (now.f - after.f + noise) / (np.maximum(foretold, 0.0) + noise)
+        taken = definite & (after.f <= now.f + noise) & (ratio > 1e-4)
         shrunk = np.maximum(SHRINK, 1.0 - (2.0 * np.clip(ratio, 0.0, 1.0) - 1.0) ** 3)
-        damping = np.clip(np.where(take, shrunk, growth) * damping, least, HOPELESS)
-        growth = np.where(take, 4.0, 2.0 * growth)
-        for new, old in zip((ahead, *there), (x, *here), strict=True):
-            np.copyto(old, new, where=take)
-        done |= (take & (_greatest(wish) < still)) | (damping > STUCK)
-        if done.all() or step == steps - 1:
-            break
-        if 3 * np.count_nonzero(done) > len(done):
-            # Those that have arrived cost no more time.
-            for whole, part in zip(end, (x, here.place, here.turn), strict=True):
-                whole[..., rows] = part
-            on = ~done
-            rows, T, x, weight, damping, growth = rows[on], T[..., on], x[:, on], weight[on], damping[on], growth[on]
-            here, done = Slope(*(part[..., on] for part in here)), done[on]
-            low, high = (bound if bound.shape[1] == 1 else bound[:, on] for bound in (low, high))
-    for whole, part in zip(end, (x, here.place, here.turn), strict=True):
-        whole[..., rows] = part
-    return end
+        damping = np.clip(np.where(taken, shrunk, growth) * damping, least, HOPELESS)
+        growth = np.where(taken, 4.0, 2.0 * growth)
+        return Judged(taken, (damping, growth), (taken & (longest < still)) | (damping > STUCK))
+
+    x = np.minimum(np.maximum(x, low), high)
+    trust = CAUTION * weight + least, np.full(x.shape[1], 4.0)
+    x, place, turn = led_down(look, step, judge, x, trust, steps=steps, told=2, axis=-1)
+    return x, place, turn
 
 
 def _step(here: Slope, held: Flags, damping: Array, weight: Array, unit: Array) -> tuple[Array, Array, Flags]:
@@ -207,6 +200,11 @@ def offsets(chain: Chain, T: Array, x: Array, size: float) -> Array:
     """p - t (3, s) [size] at x: (n, s) [rad | size], for targets T: (4, 3, s) [m]."""
     away: Array = (_motion(chain, x, size).tool[3] - T[3]) / size
     return away
+
+
+def _of(part: Array, rows: Index) -> Array:
+    """What some of the starts, in order, have of (..., s), or what they all share, (..., 1)."""
+    return part if part.shape[-1] in (1, len(rows)) else part[..., rows]
 
 
 def _dot(u: Array, v: Array) -> Array:

@@ -16,10 +16,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from robokin.arrays import Array
+from robokin.arrays import Array, Index
 from robokin.inverse.numeric.position_first import DescentEnds, Ways
 from robokin.inverse.numeric.second_order import offsets, place_jacobian, slope
-from robokin.kernel.damped_newton import held_at, limited
+from robokin.kernel.damped_newton import Judged, Known, Trial, held_at, led_down, limited
 
 HAS_POSITION = 1e-11
 """Distance [size] up to which a configuration has the position."""
@@ -48,24 +48,23 @@ def turned_in_place(ways: Ways, T: Array, ends: DescentEnds) -> DescentEnds:
     chosen = np.flatnonzero((ends.distance <= HAS_POSITION) & (ends.angle > 0.0))
     if not len(chosen):
         return ends
-    x = ends.x[:, chosen].copy()
-    T = T[..., chosen]
-    low, high = (np.broadcast_to(bound, ends.x.shape)[:, chosen] for bound in (ways.low, ways.high))
-    part, place = np.ones(len(chosen)), ends.distance[chosen].copy()
-    turn = slope(ways.chain, T, x, ways.size, np.ones(len(chosen))).turn
-    rows = np.arange(len(chosen))
-    for _ in range(STEPS):
-        step = _step(ways, T[..., rows], x[:, rows], low[:, rows], high[:, rows]) * part[rows]
-        on = np.max(np.abs(step), axis=0) > SHORTEST
-        rows, step = rows[on], step[:, on]
-        if not len(rows):
-            break
-        new = _back(ways, T[..., rows], x[:, rows] + step, low[:, rows], high[:, rows])
-        there = slope(ways.chain, T[..., rows], new, ways.size, np.ones(len(rows)))
-        distance = np.sqrt(2.0 * there.place)
-        less = (distance <= np.maximum(place[rows], HAS_POSITION)) & (there.turn < turn[rows])
-        x[:, rows[less]], turn[rows[less]], place[rows[less]] = new[:, less], there.turn[less], distance[less]
-        part[rows] = np.where(less, np.minimum(2.0 * part[rows], 1.0), 0.25 * part[rows])
+    T, low, high = T[..., chosen], *(np.broadcast_to(bound, ends.x.shape)[:, chosen] for bound in (ways.low, ways.high))
+
+    def look(rows: Index, x: Array) -> Known:
+        here = slope(ways.chain, T[..., rows], x, ways.size, np.ones(len(rows)))
+        return np.sqrt(2.0 * here.place), here.turn
+
+    def step(rows: Index, x: Array, here: Known, trust: Known) -> Trial:
+        target, *box = T[..., rows], low[:, rows], high[:, rows]
+        dx = _step(ways, target, x, *box) * trust[0]
+        return Trial(_back(ways, target, x + dx, *box), trust, np.max(np.abs(dx), axis=0) > SHORTEST)
+
+    def judge(x: Array, here: Known, there: Known, trial: Trial) -> Judged:
+        less = (there[0] <= np.maximum(here[0], HAS_POSITION)) & (there[1] < here[1])
+        return Judged(less, (np.where(less, np.minimum(2.0 * trial.trust[0], 1.0), 0.25 * trial.trust[0]),))
+
+    trust = (np.ones(len(chosen)),)
+    x, place, turn = led_down(look, step, judge, ends.x[:, chosen], trust, steps=STEPS, told=2, axis=-1)
     out = DescentEnds(ends.x.copy(), ends.distance.copy(), ends.angle.copy())
     out.x[:, chosen], out.distance[chosen] = x, place
     out.angle[chosen] = 2.0 * np.arcsin(np.sqrt(np.minimum(0.5 * turn, 1.0)))

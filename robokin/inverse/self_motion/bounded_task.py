@@ -92,7 +92,10 @@ class BoundedTask:
         return Found(index, q, position * self.size, angle).pick(closes)
 
     def corrected(self, T: Array, x: Array) -> tuple[Array, Array, Array]:
-        """Points near x (s, n) at targets T (s, 4, 4), their errors (s, 6) and projections (s, n, n) on null spaces."""
+        """Points near x (s, n) at targets T (s, 4, 4), their errors (s, 6) and projections (s, n, n) on null spaces.
+
+        Undamped, and ended where a step gains nothing: the null space is that of the last step that did.
+        """
         x, error = x.copy(), np.full((len(x), 6), np.inf)
         project = np.zeros((*x.shape, x.shape[1]))
         rows = np.arange(len(x))

@@ -149,7 +149,9 @@ def corrected(
     """Newton steps from x (s, n) onto the configurations that reach T: (s, 4, 4).
 
     normals: (s, k, n), directions that x keeps its place along; steps: at most, of all or of each (s,); settled: the
-    error at which steps end; zero: what a singular value must exceed to count. Returns x (s, n)
+    error at which steps end; zero: what a singular value must exceed to count. Not `damped_newton.brought_down`: there
+    is no damping, which would draw x along the curve, and what counts is the last step that is not rounding, not the
+    least error. Returns x (s, n)
     [rad | size], the greatest part of the error left (s,) and the Jacobian there (s, 6, n).
     """
     e, J = errors(chain, T, x, size)
