@@ -33,6 +33,7 @@ from robokin.inverse.elimination.splits import choose_splits, elimination_of, ge
 from robokin.kernel.chain import Chain, chain_of, chain_size, with_joints, with_joints_at
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import frames, pose
+from robokin.kernel.ranks import RANK
 from robokin.kernel.residual import error_and_jacobian
 from robokin.model import Robot
 from robokin.spatial import transform
@@ -40,9 +41,6 @@ from robokin.spatial import transform
 Task = Literal["pose", "approach", "position"]
 
 CLOSED_FORMS = (SphericalTriple, ThreePrismatic, ThreeParallel)
-
-RANK = 1e-6
-"""Singular values below this part of the greatest are zero: the joints depend on each other everywhere."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,6 +28,7 @@ from robokin.inverse.single_answer import FAR
 from robokin.inverse.solutions import Result, Solution
 from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.facts import fact
+from robokin.kernel.ranks import RANK
 from robokin.model import CoupledRobot
 
 STARTS = 64
@@ -35,10 +36,6 @@ STARTS = 64
 
 SPREAD_LISTED = 16
 """Postures that are listed of infinitely many, as of arms whose joints move one by one."""
-
-LOST = 1e-6
-"""Least singular value of the errors' slopes, as a part of the greatest, at which variables can move while the task
-stays: of postures that are drawn at random none is so near to a singular one."""
 
 NEARER_STEPS = 24
 """Steps along a self-motion towards what is wished."""
@@ -185,7 +182,7 @@ def _can_move(tips: DrivenTips, T: Array, chosen: Sequence[Array]) -> bool:
     u = np.array(chosen)
     _, J = errors_and_slopes(tips, np.repeat(T[None, None], len(u), axis=0), u)
     values = np.linalg.svd(J, compute_uv=False)
-    return bool(np.all(np.sum(values > LOST * values[:, :1], axis=1) < tips.n))
+    return bool(np.all(np.sum(values > RANK * values[:, :1], axis=1) < tips.n))
 
 
 def _spread_ones(wish: CoupledWish, chosen: list[Array]) -> list[Array]:
@@ -207,7 +204,7 @@ def _nearer(wish: CoupledWish, tips: DrivenTips, T: Array, chosen: Sequence[Arra
     for _ in range(NEARER_STEPS):
         _, J = errors_and_slopes(tips, target, u[None])
         _, values, V = np.linalg.svd(J[0])
-        free = V[int(np.sum(values > LOST * values[0])) :]
+        free = V[int(np.sum(values > RANK * values[0])) :]
         step = free.T @ (free @ ((_home(wish) - u) / wish.scale))
         step *= LONGEST_STEP / max(float(np.max(np.abs(step))), LONGEST_STEP)
         there = driven_ends(tips, target, np.clip(u + step * wish.scale, tips.limits[:, 0], tips.limits[:, 1])[None])

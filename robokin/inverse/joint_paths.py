@@ -26,8 +26,9 @@ from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_finite, expect_flag, expect_whole
 from robokin.inverse.follow import MOST, Follows, follower_of
 from robokin.inverse.solve import target_poses
+from robokin.kernel.ranks import RANK
 from robokin.kinematics.forward import forward_kinematics
-from robokin.kinematics.velocity import SINGULAR, TaskName, differential_kinematics, lost_directions, motion_task
+from robokin.kinematics.velocity import TaskName, differential_kinematics, lost_directions, motion_task
 from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.model.robot import LIMIT_TOLERANCE
 from robokin.spatial import axis_angle_from_rotation, rotation_from_axis_angle, transform
@@ -292,6 +293,6 @@ def _singular(robot: Robot, s: Array, q: Array, values: Array, task: TaskName | 
         i = int(part[np.argmin(least[part])])
         lost = lost_directions(robot, q[i], task=task)
         words = f": no {lost[0].words}" if lost else ""
-        how = "singular" if least[i] < SINGULAR else f"nearly singular, least singular value {least[i]:.1e}"
+        how = "singular" if least[i] < RANK else f"nearly singular, least singular value {least[i]:.1e}"
         events.append(Event("singularity", float(s[i]), f"{how}{words}"))
     return events

@@ -20,9 +20,9 @@ from robokin.inverse.elimination.loop import ComplexCandidates
 from robokin.inverse.elimination.loop_newton import determinants
 from robokin.inverse.elimination.splits import REAL
 from robokin.inverse.numeric.least_squares import descend
-from robokin.inverse.numeric.nearest import SINGULAR as ON_CURVE
 from robokin.inverse.verify import CLOSES, VIRTUAL, Found, closing_distances, distinct, verified
 from robokin.kernel.chain import Chain
+from robokin.kernel.ranks import RANK
 from robokin.kernel.residual import TargetPoses, error_and_jacobian
 
 SINGULAR = 5e-6
@@ -155,7 +155,7 @@ def _on_self_motions(analysis: Analysis, T: Array, found: Found, still: Flags) -
     chosen = np.flatnonzero(family)
     if len(chosen):
         _, J = error_and_jacobian(analysis.six.chain, T[found.index[chosen]], found.q[chosen], analysis.size)
-        family[chosen] = np.linalg.svd(J, compute_uv=False)[:, -1] <= ON_CURVE
+        family[chosen] = np.linalg.svd(J, compute_uv=False)[:, -1] <= RANK
     return family
 
 

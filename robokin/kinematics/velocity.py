@@ -24,16 +24,13 @@ from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_finite
 from robokin.kernel.facts import fact
 from robokin.kernel.joint_axes import nearest_point
+from robokin.kernel.ranks import RANK
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
 from robokin.kinematics.structure import arm_size, structure_of
 from robokin.model import CoupledRobot, Robot, expect_robot
 
 TaskName = Literal["pose", "position", "orientation"]
-
-SINGULAR = 1e-6
-"""Singular values below this part of the greatest are zero. Joint values are typed with some six digits, and
-tables printed with five; the rounding of the calculation is far below (1e-15)."""
 
 ROWS = {"pose": slice(0, 6), "position": slice(0, 3), "orientation": slice(3, 6)}
 
@@ -116,7 +113,7 @@ def _task(robot: Robot, name: TaskName | None) -> MotionTask:
 
     def rank(rows: slice) -> int:
         values = np.linalg.svd(J[:, rows], compute_uv=False)
-        return int(np.max(np.sum(values > SINGULAR * np.maximum(values[:, :1], SINGULAR), axis=1)))
+        return int(np.max(np.sum(values > RANK * np.maximum(values[:, :1], RANK), axis=1)))
 
     if name is None:
         name = "pose"
@@ -129,7 +126,7 @@ def _task(robot: Robot, name: TaskName | None) -> MotionTask:
     counted = np.zeros_like(J)
     counted[:, ROWS[name]] = J[:, ROWS[name]]
     u, values, _ = np.linalg.svd(np.moveaxis(counted, 1, 0).reshape(6, -1))
-    span = u[:, : int(np.sum(values > SINGULAR * max(values[0], SINGULAR)))]
+    span = u[:, : int(np.sum(values > RANK * max(values[0], RANK)))]
     return MotionTask(name, rank(ROWS[name]), size, span)
 
 
@@ -161,7 +158,7 @@ def differential_kinematics(
     values = values[..., :M]
     raw = np.asarray(np.linalg.svd(J[..., rows, :], compute_uv=False)[..., :M], dtype=np.float64)
     greatest = np.max(values, axis=-1, initial=0.0)
-    rank = np.asarray(np.sum(values > SINGULAR * np.maximum(greatest, SINGULAR)[..., None], axis=-1), dtype=np.intp)
+    rank = np.asarray(np.sum(values > RANK * np.maximum(greatest, RANK)[..., None], axis=-1), dtype=np.intp)
     regular = (rank == M) & (M > 0)
     with np.errstate(divide="ignore", invalid="ignore"):
         condition = np.where(regular, greatest / np.min(values, axis=-1, initial=np.inf), np.inf)
@@ -174,7 +171,7 @@ def null_space_joints(found: Differential) -> list[tuple[int, ...]]:
     n = found.null_space.shape[-1]
     ranks, null = found.rank.reshape(-1), found.null_space.reshape(-1, n, n)
     still = np.arange(n) >= ranks[:, None]
-    moved = np.max(np.abs(null) * still[:, :, None], axis=1) > SINGULAR
+    moved = np.max(np.abs(null) * still[:, :, None], axis=1) > RANK
     return [tuple((np.flatnonzero(row) + 1).tolist()) for row in moved]
 
 
@@ -190,7 +187,7 @@ def lost_directions(
     J = np.zeros((6, robot.n))
     J[kind.rows] = scaled(robot, jacobian(robot, q), kind.size)[kind.rows]
     u, values, _ = np.linalg.svd(kind.span.T @ J)
-    rank = int(np.sum(values > SINGULAR * max(values[0], SINGULAR)))
+    rank = int(np.sum(values > RANK * max(values[0], RANK)))
     if rank >= kind.dimension:
         return []
     F = joint_frames(robot, q)
@@ -216,7 +213,7 @@ def wrist_centre(robot: Robot, frames: Array) -> Array | None:
 def _lost(twist: Array, offsets: list[tuple[str, Array]], turn: Array, wrist: bool) -> Lost:
     f, m = twist[:3] @ turn, twist[3:] @ turn
     u = np.concatenate([f, m])
-    u = np.where(np.abs(u) < SINGULAR, 0.0, u) / np.linalg.norm(u)
+    u = np.where(np.abs(u) < RANK, 0.0, u) / np.linalg.norm(u)
     u = u * np.sign(u[np.flatnonzero(u)[0]]) + 0.0
     f, m = u[:3], u[3:]
     if not f.any():
@@ -225,7 +222,7 @@ def _lost(twist: Array, offsets: list[tuple[str, Array]], turn: Array, wrist: bo
         return Lost(u, f"translation along {_direction(f)}")
     moments = [(name, m - np.cross(offset @ turn, f)) for name, offset in offsets]
     for name, about in moments:
-        if np.linalg.norm(about) < 10.0 * SINGULAR:
+        if np.linalg.norm(about) < 10.0 * RANK:
             return Lost(u, f"translation of {name} along {_direction(f)}")
     still, about = moments[0] if wrist else ("the tool's origin", m)
     return Lost(u, f"rotation about {_direction(about)} while {still} stands still")

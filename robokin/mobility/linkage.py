@@ -34,16 +34,13 @@ import numpy as np
 
 from robokin.arrays import Array, Flags
 from robokin.brief import Brief
+from robokin.kernel.ranks import LOOP_RANK
 from robokin.mobility.screws import Element, exponential, logarithm, moved_screws
 from robokin.model.topology import topology_of
 from robokin.spatial import invert
 
 CLOSED = 1e-12
 """A loop that lacks less [size and rad] is closed: some ten thousand times the rounding of its product."""
-
-RANK = 1e-8
-"""Singular values below this part of the greatest are zero, if the geometry is exact to the last digit they are
-1e-15; a mechanism whose dimensions are wrong by e has ones of about e."""
 
 NEWTON_STEPS = 25
 """Steps to close the loops; near a regular configuration four are enough."""
@@ -136,7 +133,7 @@ class Linkage:
         state: LinkageState,
         tolerance: float = CLOSED,
         keep: Flags | None = None,
-        rank: float = RANK,
+        rank: float = LOOP_RANK,
     ) -> tuple[LinkageState, Array, float]:
         """The nearest closed state that Newton's steps find, how the joints moved (f,), and what it still lacks.
 

@@ -29,8 +29,9 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.brief import Answer
+from robokin.kernel.ranks import WHEEL_RANK
 from robokin.mobility.wheel_drives import Commanded, commands_of
-from robokin.mobility.wheel_rows import RANK, WheelFrame, kernel_of, rank_of, sliding_row
+from robokin.mobility.wheel_rows import WheelFrame, kernel_of, rank_of, sliding_row
 from robokin.model import Wheel, WheeledBase, expect_wheeled
 
 NO_TURN = np.array([[0.0, 0.0, 1.0]])
@@ -120,7 +121,7 @@ def manoeuvrability_of(base: WheeledBase) -> Manoeuvrability:
     note = None
     if mobility == 0:
         note = "the axles of the wheels have no common point: the base cannot move without slipping"
-    elif bound >= 2 and abs(twists[0][2]) < RANK:
+    elif bound >= 2 and abs(twists[0][2]) < WHEEL_RANK:
         note = "the axles of the fixed wheels are parallel and apart: the base can only go straight without slipping"
     elif bound >= 2:
         note = "the axles of the fixed wheels meet in one point: the base can only turn about it"
@@ -151,7 +152,7 @@ def _steering(steered: list[Wheel], twist: Array, free: Array, frame: WheelFrame
     for wheel in steered:
         x, y = frame.along(wheel, 0.0), frame.along(wheel, 0.5 * np.pi)
         v_x, v_y = float(x @ twist), float(y @ twist)
-        rows.append((v_x * y - v_y * x) / max(v_x * v_x + v_y * v_y, RANK))
+        rows.append((v_x * y - v_y * x) / max(v_x * v_x + v_y * v_y, WHEEL_RANK))
     return np.array(rows).reshape(-1, 3) @ free
 
 
@@ -163,7 +164,7 @@ def _closure(twists: Array) -> int:
         U, values, _ = np.linalg.svd(np.concatenate([twists, brackets.T], axis=1))
         if not len(values):
             return 0
-        after = int(np.sum(values > RANK * max(values[0], 1.0)))
+        after = int(np.sum(values > WHEEL_RANK * max(values[0], 1.0)))
         twists = U[:, :after]
         if after == before:
             return after

@@ -25,9 +25,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from robokin.kernel.ranks import LOOP_RANK
 from robokin.mobility.assembly import Assembly
 from robokin.mobility.chart import Chart
-from robokin.mobility.linkage import RANK
 from robokin.mobility.linkage_blocks import Block, chart_of
 from robokin.mobility.reduced import Reduced, directions
 from robokin.mobility.screws import Element, elements_of
@@ -60,10 +60,10 @@ LOOKED_AT = (0.4, 0.3, 0.2, 0.1)
 def nearly_more(assembly: Assembly, part: BlockMobility) -> int:
     """How many more motions a block would have if its dimensions were exact: 0 where their digits do not explain it."""
     chart = part.block.chart
-    if part.undecided is not None or not np.any((part.values > RANK) & (part.values < NEARLY)):
+    if part.undecided is not None or not np.any((part.values > LOOP_RANK) & (part.values < NEARLY)):
         return 0
-    values = Reduced(chart, np.zeros(chart.n), cut=RANK).values
-    regular, few = values[values >= NEARLY], values[(values > RANK) & (values < NEARLY)]
+    values = Reduced(chart, np.zeros(chart.n), cut=LOOP_RANK).values
+    regular, few = values[values >= NEARLY], values[(values > LOOP_RANK) & (values < NEARLY)]
     small = len(few)
     if not small or (len(regular) and regular[-1] < APART * few[0]):
         return 0  # a long chain has small ones of all sizes

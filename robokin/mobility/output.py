@@ -7,10 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array
-
-RANK = 1e-6
-"""Singular values of unit twists below this are no motion: looser than for the loops, since a tangent found by
-sampling is good to eight digits."""
+from robokin.kernel.ranks import RANK
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from robokin.arrays import Flags
+from robokin.kernel.ranks import LOOP_RANK
 from robokin.mobility.assembly import Assembly
-from robokin.mobility.linkage import RANK, Linkage
+from robokin.mobility.linkage import Linkage
 from robokin.mobility.true_mobility import STILL, TrueMobility
 
 PLANE = (0, 1, 5)
@@ -46,7 +47,7 @@ def strained_joints(assembly: Assembly, motion: TrueMobility) -> tuple[str, ...]
         U, values, _ = np.linalg.svd(
             np.concatenate([by_loop[chords][:, :, own].reshape(equations, len(own)), rows[tied][:, own]])
         )
-        left = U[:, int(np.sum(values > RANK * values[:1])) :]
+        left = U[:, int(np.sum(values > LOOP_RANK * values[:1])) :]
         strains = np.einsum(
             "lj,lck->jck", loops[chords], left[:equations].reshape(len(chords), len(kept), left.shape[1])
         )

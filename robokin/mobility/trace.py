@@ -15,8 +15,9 @@ import numpy as np
 from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.errors import InputError, did_you_mean, shown
+from robokin.kernel.ranks import LOOP_RANK
 from robokin.mobility.assembly import Assembly, assembled
-from robokin.mobility.linkage import RANK, Linkage, LinkageState
+from robokin.mobility.linkage import Linkage, LinkageState
 from robokin.mobility.roles import still_freedoms
 from robokin.mobility.trace_columns import labels_of, of_pins, whole_rotations
 from robokin.mobility.true_mobility import TrueMobility, beginnings_of, kernel_at, motion_of, velocities_of
@@ -35,9 +36,9 @@ FARTHEST_GEARED = 40.0 * np.pi
 STOPS = 1e-3
 """A step of the joint that leads [rad | size] below which it stops or turns back there: a fortieth of a pace."""
 
-ASSEMBLED = 10.0 * RANK
-"""A state that lacks no more [size, rad] is assembled: a geometry whose errors `RANK` takes for none leaves some times
-as much at the end of a step; an exact one closes to 1e-15."""
+ASSEMBLED = 10.0 * LOOP_RANK
+"""A state that lacks no more [size, rad] is assembled: a geometry whose errors `LOOP_RANK` takes for none leaves some
+times as much at the end of a step; an exact one closes to 1e-15."""
 
 SINGULAR_PART = 1e-9
 """A direction whose part in the kernel is less leads nowhere."""

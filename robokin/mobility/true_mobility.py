@@ -37,8 +37,9 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.brief import Brief
+from robokin.kernel.ranks import LOOP_RANK
 from robokin.mobility.configuration_branches import branches_of, isolation
-from robokin.mobility.linkage import RANK, Linkage, LinkageState
+from robokin.mobility.linkage import Linkage, LinkageState
 from robokin.mobility.linkage_blocks import Block, blocks_of, speeds_of, state_of
 from robokin.mobility.measured import Branch
 from robokin.mobility.reduced import Reduced, directions
@@ -171,7 +172,7 @@ def beginnings_of(linkage: Linkage, motion: TrueMobility) -> Array:
     return np.concatenate(speeds, axis=1) if speeds else np.zeros((linkage.freedoms, 0))
 
 
-def kernel_at(linkage: Linkage, state: LinkageState, rank: float = RANK) -> tuple[Array, Array]:
+def kernel_at(linkage: Linkage, state: LinkageState, rank: float = LOOP_RANK) -> tuple[Array, Array]:
     """Singular values of the equations as parts of the greatest, and their kernel (f, k): those below `rank`."""
     J = linkage.jacobian(state)
     if not J.size:
@@ -189,8 +190,8 @@ def part_of(block: Block, wandering: bool = False) -> BlockMobility:
         q = 0.2 * directions(chart.n)[-1] if chart.n else np.zeros(0)
         free = Branch(chart.n, chart.n, q, np.eye(chart.n), np.eye(chart.n))
         return BlockMobility(block, np.zeros(0), chart.n + len(block.spins), np.eye(chart.n), (free,))
-    reduced = Reduced(chart, np.zeros(chart.n), cut=RANK)
-    whole = Reduced(block.whole, np.zeros(block.whole.n), cut=RANK) if block.spins else reduced
+    reduced = Reduced(chart, np.zeros(chart.n), cut=LOOP_RANK)
+    whole = Reduced(block.whole, np.zeros(block.whole.n), cut=LOOP_RANK) if block.spins else reduced
     values = whole.values[: 6 * len(chart.chords) + len(chart.rows)]
     part = BlockMobility(block, values, reduced.k + len(block.spins), reduced.V0, (_pose(reduced),))
     if not reduced.k:

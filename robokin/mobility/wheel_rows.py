@@ -25,11 +25,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array
+from robokin.kernel.ranks import WHEEL_RANK
 from robokin.model import Wheel
-
-RANK = 1e-9
-"""Singular values below this part of the greatest, or of 1, are zero: rows are of size 1, and rounding leaves 1e-16 of
-what is zero, also where all of it is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +59,7 @@ class WheelFrame:
         """The direction in which a wheel's point goes when the base moves with a twist (3,); its own at rest."""
         x, y = self.place(wheel)
         v_x, v_y = twist[0] - twist[2] * y, twist[1] + twist[2] * x
-        return float(np.arctan2(v_y, v_x)) if np.hypot(v_x, v_y) > RANK else wheel.angle
+        return float(np.arctan2(v_y, v_x)) if np.hypot(v_x, v_y) > WHEEL_RANK else wheel.angle
 
 
 def sliding_row(frame: WheelFrame, wheel: Wheel, angle: float) -> Array:
@@ -88,7 +85,7 @@ def rank_of(rows: Array) -> int:
     if not rows.size:
         return 0
     values = np.linalg.svd(rows, compute_uv=False)
-    return int(np.sum(values > RANK * max(values[0], 1.0)))
+    return int(np.sum(values > WHEEL_RANK * max(values[0], 1.0)))
 
 
 def kernel_of(rows: Array) -> Array:

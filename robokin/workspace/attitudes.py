@@ -21,8 +21,9 @@ from robokin.arrays import Array, Flags
 from robokin.inverse.analysis import Task, analysis_of
 from robokin.kernel.frames import frames, pose
 from robokin.kernel.geometric_jacobian import jacobian_of
+from robokin.kernel.ranks import RANK
 from robokin.spatial import rotation_from_axis_angle, rotation_from_quaternion
-from robokin.workspace.space import PROBES, RANK, Space
+from robokin.workspace.space import PROBES, Space
 
 Group = Literal["SO(2)", "S2", "SO(3)", "curve", "finite"]
 

@@ -13,6 +13,7 @@ from robokin.errors import InputError
 from robokin.kernel.chain import Chain, chain_of, chain_size, row_standing
 from robokin.kernel.frames import frames
 from robokin.kernel.geometric_jacobian import jacobian_of
+from robokin.kernel.ranks import RANK
 from robokin.model import CoupledRobot, Robot
 from robokin.workspace.geared_box import geared_box
 from robokin.workspace.half_spaces import HalfSpaces
@@ -21,9 +22,6 @@ TURN = 2.0 * np.pi
 
 STILL = 1e-9
 """A joint that moves the origin by less, as a part of the arm's size, does not move it."""
-
-RANK = 1e-6
-"""Singular values below this part of the greatest are zero: tables are printed to some five digits."""
 
 HELD = 1e-9
 """A joint with less of a range [rad | size] has one value."""

@@ -13,10 +13,11 @@ from robokin.inverse.elimination.splits import Elimination, elimination_of
 from robokin.inverse.numeric.least_squares import descend
 from robokin.inverse.second_look import look_again
 from robokin.inverse.self_motion.fold import to_multiple_roots
-from robokin.inverse.self_motion.null_motion import ZERO, least_squares
+from robokin.inverse.self_motion.null_motion import least_squares
 from robokin.inverse.solve_blocks import rows_of
 from robokin.inverse.verify import nothing
 from robokin.inverse.window import least_singular_values, nearly_singular
+from robokin.kernel.ranks import ROOT_RANK
 
 ANYWHERE = np.tile([-np.inf, np.inf], (6, 1))
 
@@ -40,7 +41,7 @@ def test_a_step_is_that_of_the_singular_values(rng, shape, slide):
     b = rng.normal(size=(60, shape[0]))
     for one, side, step in zip(A, b, least_squares(A, b), strict=True):
         greatest = np.linalg.norm(one, 2)
-        expected = np.linalg.pinv(one, rcond=ZERO / greatest if greatest else 1.0) @ side
+        expected = np.linalg.pinv(one, rcond=ROOT_RANK / greatest if greatest else 1.0) @ side
         assert np.max(np.abs(step - expected)) <= 1e-4 * np.max(np.abs(expected))
 
 

@@ -12,8 +12,8 @@ from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
+from robokin.kernel.ranks import LOOP_RANK
 from robokin.mobility.count import grubler, grubler_by_constraints
-from robokin.mobility.linkage import RANK
 from robokin.mobility.verdict import mobility_of
 from robokin.model import Mechanism
 
@@ -47,7 +47,7 @@ def test_planar_rings():
 
 @pytest.mark.parametrize("wrong", [1e-3, 1e-6, 3e-8])
 def test_bennett_s_linkage_nearly(wrong):
-    """Off by more than RANK it is rigid, and the answer says by how much it misses."""
+    """Off by more than LOOP_RANK it is rigid, and the answer says by how much it misses."""
     found = mobility_of(bennett(wrong))
     assert (found.verdict, found.mobility) == ("nearly", 0)
     assert 0.1 * wrong < found.motion.gap[0] < 10 * wrong
@@ -56,11 +56,11 @@ def test_bennett_s_linkage_nearly(wrong):
 
 @pytest.mark.parametrize("wrong", [0.0, 1e-12, 1e-10, 1e-9, 3e-9, 8e-9])
 def test_bennett_s_linkage_exactly(wrong):
-    assert RANK == 1e-8
+    assert LOOP_RANK == 1e-8
     found = mobility_of(bennett(wrong))
     assert (found.verdict, found.mobility, found.redundant, found.count) == ("exceptional", 1, 3, -2)
     assert found.motion.gap[0] > 0.1
-    assert found.motion.gap[1] < RANK
+    assert found.motion.gap[1] < LOOP_RANK
 
 
 @pytest.mark.parametrize("space", ["planar", "spatial"])

@@ -11,6 +11,7 @@ from robokin.inverse.numeric.least_squares import descend
 from robokin.inverse.verify import CLOSES, Found, closing_distances, nothing
 from robokin.kernel.chain import Chain
 from robokin.kernel.frames import pose
+from robokin.kernel.ranks import RANK
 from robokin.kernel.residual import error_and_jacobian
 
 STARTS = 64
@@ -18,9 +19,6 @@ STARTS = 64
 
 DRAWN = 2048
 """Configurations drawn to choose the starts from."""
-
-SINGULAR = 1e-6
-"""Least singular value of the Jacobian (lengths in sizes) below which a configuration is singular."""
 
 TRADES = 4
 """Steps of a walk along a suspected self-motion, each way."""
@@ -83,9 +81,9 @@ def free_at(analysis: Analysis, q: Array) -> list[tuple[int, ...]]:
         moved = np.zeros((len(q), own), dtype=bool)
     else:
         _, values, Vt = np.linalg.svd(J)
-        moved = np.linalg.norm(Vt[:, dimension:, :own], axis=1) > SINGULAR
+        moved = np.linalg.norm(Vt[:, dimension:, :own], axis=1) > RANK
     free = [tuple((np.flatnonzero(row) + 1).tolist()) for row in moved]
-    singular = np.flatnonzero(values[:, dimension - 1] <= SINGULAR)
+    singular = np.flatnonzero(values[:, dimension - 1] <= RANK)
     if len(singular):
         trading = free_joints(chain, q[singular], T[singular], analysis.size)[:, :own]
         trading[:, list(analysis.idle)] = True
@@ -119,7 +117,7 @@ def free_joints(chain: Chain, q: Array, T: Array, size: float) -> Flags:
     """
     _, J = error_and_jacobian(chain, T, q, size)
     _, values, Vt = np.linalg.svd(J)
-    rank = np.sum(values > SINGULAR, axis=1)
+    rank = np.sum(values > RANK, axis=1)
     ways = [few_joints(V[r:]) for V, r in zip(Vt, rank, strict=True)]
     which = np.tile(np.repeat(np.arange(len(q)), chain.n - rank), 2)
     ahead = np.concatenate([*ways, *(-way for way in ways)])

@@ -20,6 +20,7 @@ from robokin.arrays import Array, Index
 from robokin.inverse.numeric.position_first import DescentEnds, Ways
 from robokin.inverse.numeric.second_order import offsets, place_jacobian, slope
 from robokin.kernel.damped_newton import Judged, Known, Trial, held_at, led_down, limited
+from robokin.kernel.ranks import RANK
 
 HAS_POSITION = 1e-11
 """Distance [size] up to which a configuration has the position."""
@@ -35,9 +36,6 @@ SHORTEST = 1e-9
 
 BACK = 3
 """Newton's steps back to the position after each."""
-
-RANK = 1e-6
-"""Singular values of J [size] below this are zero."""
 
 FLAT = 1e-9
 """Least curvature that a step is divided by."""

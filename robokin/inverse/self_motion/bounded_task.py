@@ -19,11 +19,9 @@ from robokin.inverse.analysis import Analysis
 from robokin.inverse.self_motion.null_motion import CLOSES, SETTLED, errors, scale_of
 from robokin.inverse.verify import Found, wrapped
 from robokin.kernel.frames import pose
+from robokin.kernel.ranks import TASK_RANK
 from robokin.model.robot import LIMIT_TOLERANCE
 from robokin.spatial import nearest_rotation
-
-SINGULAR = 1e-7
-"""Singular values of the Jacobian below this are zero."""
 
 NEWTON_STEPS = 6
 """Newton's steps of a correction at most: the error is squared each time, from 1e-2."""
@@ -103,7 +101,7 @@ class BoundedTask:
         for step in range(NEWTON_STEPS + 1):
             e, J = errors(self.chain, T[rows], new, self.size)
             U, values, Vt = np.linalg.svd(J, full_matrices=False)
-            null = values <= SINGULAR
+            null = values <= TASK_RANK
             null[:, self.analysis.window.dimension :] = True
             rank = ~null
             better = np.max(np.abs(e), axis=1) < np.max(np.abs(error[rows]), axis=1)

@@ -18,9 +18,10 @@ import numpy as np
 
 from robokin.arrays import Array, Index
 from robokin.inverse.self_motion.curve_tracing import Curve
-from robokin.inverse.self_motion.null_motion import ZERO, errors
+from robokin.inverse.self_motion.null_motion import errors
 from robokin.inverse.self_motion.track import Tracks, least
 from robokin.kernel.chain import Chain
+from robokin.kernel.ranks import ROOT_RANK
 
 NEAR = 0.1
 """Singular value at a point of a curve below which it may vanish before the next: it changes by less on the way."""
@@ -44,7 +45,7 @@ def crossings(curves: Sequence[Curve], chain: Chain, T: Array, size: float) -> t
 
     k = tracks.of_points
     sampled = values(k, tracks.points)
-    rank = np.maximum.reduceat(np.sum(sampled > ZERO, axis=1), tracks.first)
+    rank = np.maximum.reduceat(np.sum(sampled > ROOT_RANK, axis=1), tracks.first)
     watched = (rank > 0) & ((chain.n <= 6) | (rank == 6))
 
     def second(k: Index, x: Array) -> Array:
@@ -63,5 +64,5 @@ def crossings(curves: Sequence[Curve], chain: Chain, T: Array, size: float) -> t
     of, place = np.repeat(k[low], 2), np.repeat((low - tracks.first[k[low]]).astype(np.float64), 2)
     start = place - np.tile([1.0, 0.0], len(low))
     places, lowest = least(tracks, of, start, start + 1.0, lambda _, k, x: second(k, x), NEAR)
-    zero = lowest <= ZERO
+    zero = lowest <= ROOT_RANK
     return chosen[of[zero]], tracks.at(of[zero], places[zero]) * tracks.scale

@@ -21,11 +21,12 @@ from robokin.inverse.closed_form.spherical_wrist import SphericalTriple
 from robokin.inverse.self_motion.curve_tracing import Curve
 from robokin.inverse.self_motion.fronts import slide_reach
 from robokin.inverse.self_motion.nearest_member import members_near, nearest_on_each
-from robokin.inverse.self_motion.null_motion import ZERO, corrected, errors, on_the_way_home, scale_of
+from robokin.inverse.self_motion.null_motion import corrected, errors, on_the_way_home, scale_of
 from robokin.inverse.self_motion.solution_sets import Families, families
 from robokin.inverse.verify import CLOSES, Found, with_ones_within, within_limits
 from robokin.inverse.window import least_singular_values
 from robokin.kernel.chain import Chain
+from robokin.kernel.ranks import ROOT_RANK
 from robokin.kernel.residual import error_and_jacobian
 
 TURN = 2.0 * np.pi
@@ -117,7 +118,7 @@ def _once(
     least = least_singular_values(chain, found.q, size)
     found, least, astray = _within_reach(chain, T, found, least, size, limits)
     found, least = _thinned(chain, found, least, size)
-    singular = np.flatnonzero(least < ZERO)
+    singular = np.flatnonzero(least < ROOT_RANK)
     if not len(singular):
         return found, {}, astray, np.zeros(len(T), dtype=np.intp)
     q, index = found.q.copy(), found.index
@@ -142,7 +143,7 @@ def _once(
     position[stands], angle[stands] = np.linalg.norm(off[:, :3], axis=1) * size, np.linalg.norm(off[:, 3:], axis=1)
     alone = sets.of < 0
     least[singular] = least_singular_values(chain, q[singular], size)
-    unclear = index[singular[alone & ~(local.double & moved) & (least[singular] < ZERO)]]
+    unclear = index[singular[alone & ~(local.double & moved) & (least[singular] < ROOT_RANK)]]
     # Any solution of these targets may be a place where Newton's steps gave up on the way to a multiple root.
     off = np.maximum(position / size, angle)
     off[stands] = 0.0
@@ -151,7 +152,7 @@ def _once(
     again, beside = _again(chain, T, index, q, rows, size, least)
     keep[again] = False
     keep[_on_motions(chain, index, q, rows, size, least, motions)] = False
-    crowded = _crowded(chain, index, q, singular[alone & keep[singular] & (least[singular] < ZERO)], size)
+    crowded = _crowded(chain, index, q, singular[alone & keep[singular] & (least[singular] < ROOT_RANK)], size)
     return (
         Found(index, q, position, angle).pick(keep),
         motions,
@@ -203,7 +204,9 @@ def _within_reach(
     brought near. Curves come from where they are followed, so that of targets with other singular solutions no
     member beyond is needed.
     """
-    far = np.flatnonzero((least < ZERO) & np.any(np.abs(found.q) > slide_reach(chain, size, limits) * size, axis=1))
+    far = np.flatnonzero(
+        (least < ROOT_RANK) & np.any(np.abs(found.q) > slide_reach(chain, size, limits) * size, axis=1)
+    )
     if not len(far):
         return found, least, far
     q, position, angle, least = found.q.copy(), found.position.copy(), found.angle.copy(), least.copy()
@@ -218,7 +221,7 @@ def _within_reach(
     position[near], angle[near] = np.linalg.norm(error[:, :3], axis=1) * size, np.linalg.norm(error[:, 3:], axis=1)
     least[near] = least_singular_values(chain, q[near], size)
     far = far[~brought]
-    others = np.setdiff1d(np.flatnonzero(least < ZERO), far)
+    others = np.setdiff1d(np.flatnonzero(least < ROOT_RANK), far)
     far = far[np.isin(found.index[far], found.index[others])]
     keep = np.ones(len(q), dtype=bool)
     keep[far] = False

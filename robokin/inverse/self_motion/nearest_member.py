@@ -20,10 +20,11 @@ from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.arcs import pieces
 from robokin.inverse.self_motion.curve_tracing import Curve
 from robokin.inverse.self_motion.fronts import LONGEST, TURN
-from robokin.inverse.self_motion.null_motion import CLOSES, ZERO, corrected, errors
+from robokin.inverse.self_motion.null_motion import CLOSES, corrected, errors
 from robokin.inverse.self_motion.solution_sets import on_curve, turned_gap
 from robokin.inverse.self_motion.track import KINK, PARTS, Tracks, least
 from robokin.kernel.chain import Chain
+from robokin.kernel.ranks import ROOT_RANK
 
 SLACK = 1.1
 """What a curve's pieces are longer than their chords, at most."""
@@ -342,7 +343,7 @@ def _nearest_on_surface(tracks: Tracks, T: Array, curve: Curve, wish: Array) -> 
         gap[:, :own] = turned_gap(chain, np.pad(wish - x[:, :own], ((0, 0), (0, chain.n - own))))[:, :own]
         _, J = errors(chain, many, x, tracks.size)
         values, Vt = np.linalg.svd(J)[1:]
-        felt = Vt[:, : values.shape[1]] * (values > ZERO)[:, :, None]
+        felt = Vt[:, : values.shape[1]] * (values > ROOT_RANK)[:, :, None]
         step = gap - ((felt @ gap[:, :, None]).transpose(0, 2, 1) @ felt)[:, 0]
         length = np.linalg.norm(step, axis=1, keepdims=True)
         step *= np.minimum(1.0, LONGEST / np.maximum(length, 1e-12))

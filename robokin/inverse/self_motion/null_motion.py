@@ -32,11 +32,8 @@ from robokin.arrays import Array, Flags, Index
 from robokin.inverse.numeric.nearest import few_joints
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import limited
+from robokin.kernel.ranks import ROOT_RANK
 from robokin.kernel.residual import error_and_jacobian
-
-ZERO = 1e-5
-"""Singular values of the Jacobian (lengths in sizes) below this are zero. Newton's method stops some 1e-8 to 1e-6
-from a double root, and leaves a singular value of that size there; away from special points they are above 1e-3."""
 
 SETTLED = 1e-13
 """Error [size and rad] at which Newton steps end: some hundred times the rounding of the pose."""
@@ -102,7 +99,7 @@ def errors(chain: Chain, T: Array, x: Array, size: float) -> tuple[Array, Array]
     return error_and_jacobian(chain, T, x * scale_of(chain, size), size)
 
 
-def least_squares(A: Array, b: Array, zero: float = ZERO) -> Array:
+def least_squares(A: Array, b: Array, zero: float = ROOT_RANK) -> Array:
     """(s, n) the shortest solution of A (s, m, n) dx = b (s, m), singular values up to `zero` left out.
 
     Where none is below `PLAIN` the normal equations have the digits that a Newton step needs, and take a tenth of the
@@ -144,7 +141,7 @@ def corrected(
     normals: Array | None = None,
     steps: int | Index = STEPS,
     settled: float = SETTLED,
-    zero: float = ZERO,
+    zero: float = ROOT_RANK,
 ) -> tuple[Array, Array, Array]:
     """Newton steps from x (s, n) onto the configurations that reach T: (s, 4, 4).
 
@@ -224,7 +221,7 @@ def second_order(J: Array, null: Array, left: Array) -> Array:
 def null_spaces(J: Array) -> tuple[Array, Array]:
     """A basis of the null space (d, n) of one Jacobian (6, n) and of its left null space (m, 6)."""
     U, values, Vt = np.linalg.svd(J)
-    rank = int(np.sum(values > ZERO))
+    rank = int(np.sum(values > ROOT_RANK))
     return np.asarray(Vt[rank:]), np.asarray(U[:, rank:].T)
 
 
@@ -236,7 +233,7 @@ def cone(J: Array) -> tuple[Array, bool]:
 def cones(J: Array) -> list[tuple[Array, bool]]:
     """`cone` of each of some Jacobians (s, 6, n)."""
     U, values, Vt = np.linalg.svd(J)
-    rank = np.sum(values > ZERO, axis=1).tolist()
+    rank = np.sum(values > ROOT_RANK, axis=1).tolist()
     null, left = [v[r:] for v, r in zip(Vt, rank, strict=True)], [u[:, r:].T for u, r in zip(U, rank, strict=True)]
     Q = [second_order(*parts) if len(parts[1]) > 1 else None for parts in zip(J, null, left, strict=True)]
     great = [i for i, forms in enumerate(Q) if forms is not None and forms.size and np.max(np.abs(forms)) > IDENTICAL]

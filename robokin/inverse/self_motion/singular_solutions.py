@@ -24,7 +24,6 @@ from robokin.inverse.self_motion.fold import SLIGHT_BEND, to_fold, to_multiple_r
 from robokin.inverse.self_motion.null_motion import (
     CLOSES,
     SLOW_STEPS,
-    ZERO,
     cone,
     cones,
     corrected,
@@ -35,6 +34,7 @@ from robokin.inverse.self_motion.null_motion import (
     straight_line,
 )
 from robokin.kernel.chain import Chain
+from robokin.kernel.ranks import RANK, ROOT_RANK
 
 
 class Local(NamedTuple):
@@ -77,7 +77,7 @@ def suspected(chain: Chain, T: Array, q: Array, size: float, alone: bool = True)
     """
     scale = scale_of(chain, size)
     x, off, J = corrected(chain, T, q / scale, size)
-    null = chain.n - np.sum(np.linalg.svd(J, compute_uv=False) > ZERO, axis=1)
+    null = chain.n - np.sum(np.linalg.svd(J, compute_uv=False) > ROOT_RANK, axis=1)
     exact = np.where(off[:, None] <= CLOSES, x * scale, q)
     double = np.zeros(len(x), dtype=bool)
     # With a Jacobian of full rank the solutions are a manifold, and at a fold no curve leaves: neither is tried.
@@ -177,7 +177,7 @@ def _dimension(chain: Chain, T: Array, x: Array, ways: Array, flat: bool, size: 
     """
     if len(ways) == 1 and flat:
         return 1
-    mixed = np.linalg.svd(ways, full_matrices=False)[2][: np.linalg.matrix_rank(ways, tol=1e-6)]
+    mixed = np.linalg.svd(ways, full_matrices=False)[2][: np.linalg.matrix_rank(ways, tol=RANK)]
     if flat and len(mixed) > 1:
         drawn = np.random.default_rng(3).normal(size=(2, len(mixed))) @ mixed
         drawn /= np.linalg.norm(drawn, axis=1, keepdims=True)

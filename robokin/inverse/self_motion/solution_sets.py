@@ -22,9 +22,10 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.curve_tracing import BESIDE, Curve
 from robokin.inverse.self_motion.fronts import LONGEST, SAME, TURN
-from robokin.inverse.self_motion.null_motion import CLOSES, SLOW_STEPS, ZERO, corrected, errors, scale_of
+from robokin.inverse.self_motion.null_motion import CLOSES, SLOW_STEPS, corrected, errors, scale_of
 from robokin.inverse.self_motion.singular_solutions import Local, stand_alone, suspected, traced_sets
 from robokin.kernel.chain import Chain
+from robokin.kernel.ranks import ROOT_RANK
 
 FEW = 4
 """Seeds of one target that are followed at the same time: most targets have no more curves."""
@@ -264,7 +265,7 @@ def walks_to(chain: Chain, T: Array, start: Array, ends: Array, size: float) -> 
         many = np.broadcast_to(T, (len(on), 4, 4))
         _, J = errors(chain, many, x, size)
         values, Vt = np.linalg.svd(J)[1:]
-        felt = Vt[:, : values.shape[1]] * (values > ZERO)[:, :, None]
+        felt = Vt[:, : values.shape[1]] * (values > ROOT_RANK)[:, :, None]
         step = gap - ((felt @ gap[:, :, None]).transpose(0, 2, 1) @ felt)[:, 0]
         length = np.linalg.norm(step, axis=1)
         step *= np.minimum(1.0, LONGEST / np.maximum(length, 1e-300))[:, None]
