@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.arrays import Index
-from robokin.inverse.self_motion.members import SelfMotion
+from robokin.inverse.self_motion.chosen_members import SelfMotion
 from robokin.inverse.verify import Found, merged
 
 NOTHING, COUNTED, ACCOUNTED = 0, 1, 2

@@ -17,7 +17,7 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.inverse.analysis import Task, analysis_of
 from robokin.inverse.claims import SEARCHED, SPREAD
-from robokin.inverse.coupled_turns import SAME, TURN
+from robokin.inverse.coupled_turns import SAME
 from robokin.inverse.full_turns import task_errors
 from robokin.inverse.numeric.closest import beyond_reach
 from robokin.inverse.numeric.driven_descent import chosen_starts, driven_ends, driven_search
@@ -30,6 +30,7 @@ from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.facts import fact
 from robokin.kernel.ranks import RANK
 from robokin.model import CoupledRobot
+from robokin.spatial.angles import circled
 
 STARTS = 64
 """Descents for each target of an arm with followers; distinct ends of them are listed."""
@@ -190,7 +191,7 @@ def _spread_ones(wish: CoupledWish, chosen: list[Array]) -> list[Array]:
     x = np.array(chosen)
     turning = wish.robot.revolute
     move = np.max(np.abs(x - _home(wish)) / wish.scale, axis=1)
-    x = np.where(turning, x - TURN * np.round(x / TURN), x) / wish.scale
+    x = circled(x, turning) / wish.scale
     index, rank = np.zeros(len(x), dtype=np.intp), np.ones(len(x), dtype=np.intp)
     most = SPREAD_LISTED if wish.most is None else wish.most
     return [chosen[i] for i in well_spread(index, x, turning, move, rank, most).tolist()]

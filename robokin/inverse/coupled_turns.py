@@ -24,8 +24,7 @@ from robokin.inverse.verify import within_limits, wrapped
 from robokin.kernel.facts import fact
 from robokin.model import CoupledRobot
 from robokin.model.robot import tolerated, within
-
-TURN = 2.0 * math.pi
+from robokin.spatial.angles import TURN, circled
 
 MOST = 10_000
 """Configurations of the drives that are looked at for one of the joints: limits that allow more are refused."""
@@ -136,9 +135,7 @@ def _inside(box: Array, own: Array, q: Array, v: Array) -> Flags:
 
 def _equal(a: Array, b: Array, turning: Flags) -> bool:
     """Whether two values (k,) are the same, of angles but for full turns."""
-    gap = a - b
-    gap = np.where(turning, gap - TURN * np.round(gap / TURN), gap)
-    return bool(np.max(np.abs(gap), initial=0.0) < SAME)
+    return bool(np.max(np.abs(circled(a - b, turning)), initial=0.0) < SAME)
 
 
 def _searched_box(box: Array, turning: Flags, limits: bool, near: Array) -> Array:

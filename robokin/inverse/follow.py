@@ -21,6 +21,7 @@ from robokin.kernel.damped_newton import brought_down, limited, singular_step
 from robokin.kernel.frames import pose
 from robokin.kernel.residual import error_and_jacobian
 from robokin.model import CoupledRobot, Robot
+from robokin.spatial.angles import circled
 
 NEAR = 0.1
 """A step that moves no joint by more [rad | size] is no jump: different solutions are farther apart but near a
@@ -141,15 +142,13 @@ class Follower:
 
     def turned(self, x: Array, q: Array) -> Array:
         """A configuration x (n,) with its angles turned as near to q (n,) as they come."""
-        gap = x - q
-        return np.asarray(q + np.where(self.robot.revolute, gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi)), gap))
+        return np.asarray(q + circled(x - q, self.robot.revolute))
 
     def chosen(self, rows: Array, q: Array) -> Array | None:
         """The nearest of the rows (k, n), angles turned as near to q as they come."""
         if not len(rows):
             return None
-        gap = rows - q
-        gap = np.where(self.robot.revolute, gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi)), gap)
+        gap = circled(rows - q, self.robot.revolute)
         best = int(np.argmin(np.max(np.abs(gap) / self.scale, axis=1)))
         return np.asarray(q + gap[best])
 

@@ -25,8 +25,7 @@ from robokin.inverse.verify import residuals
 from robokin.kinematics.forward import forward_kinematics
 from robokin.model import Robot
 from robokin.model.robot import LIMIT_TOLERANCE
-
-TURN = 2.0 * math.pi
+from robokin.spatial.angles import TURN
 
 MOST_TURNS = 10_000
 """Equivalents of one solution that are listed at most: 2⁷ for seven joints of ±360°, and far below what fills a

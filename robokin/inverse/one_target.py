@@ -27,8 +27,8 @@ from robokin.inverse.claims import BASES, COUNTED, Claims
 from robokin.inverse.closed_form.straight_forms import StraightForm, straight_form
 from robokin.inverse.elimination.loop import ComplexCandidates, Loop
 from robokin.inverse.elimination.loop_newton import refine
-from robokin.inverse.full_turns import TURN, turning
-from robokin.inverse.self_motion.members import NEIGHBOURS
+from robokin.inverse.full_turns import turning
+from robokin.inverse.self_motion.root_neighbours import NEIGHBOURS
 from robokin.inverse.solution_names import listed_names
 from robokin.inverse.solutions import Question, Result, named_later
 from robokin.inverse.verify import (
@@ -47,6 +47,7 @@ from robokin.kernel.frames import program_to_tool
 from robokin.kernel.straight_line import StraightResiduals, straight_residuals
 from robokin.model import Robot
 from robokin.model.robot import LIMIT_TOLERANCE, tolerated
+from robokin.spatial.angles import TURN
 from robokin.spatial.transforms import FARTHEST
 
 RIGID = 1e-14

@@ -33,7 +33,7 @@ from robokin.inverse.elimination.skew import Skew
 from robokin.inverse.elimination.splits import REAL, count_solutions
 from robokin.inverse.elimination.starts_close_by import CloseBy
 from robokin.inverse.numeric.least_squares import descend
-from robokin.inverse.self_motion.members import SelfMotion
+from robokin.inverse.self_motion.chosen_members import SelfMotion
 from robokin.inverse.self_motion.more_motions import listed_with_more
 from robokin.inverse.verify import CLOSES, Found, distinct, merged
 from robokin.kernel.chain import Chain

@@ -17,7 +17,8 @@ from robokin.inverse.numeric.closing import closing_nearest
 from robokin.inverse.numeric.least_squares import descend
 from robokin.inverse.numeric.nearest import free_at, numeric_solutions
 from robokin.inverse.self_motion.arcs import arcs_of_each
-from robokin.inverse.self_motion.members import SelfMotion, listed_once
+from robokin.inverse.self_motion.chosen_members import SelfMotion
+from robokin.inverse.self_motion.members import listed_once
 from robokin.inverse.self_motion.onto_limits import onto_limits
 from robokin.inverse.self_motion.redundant import MOST_SOUGHT, UNPROVEN, supplemented
 from robokin.inverse.self_motion.spread import well_spread

@@ -31,7 +31,7 @@ a root that is good to 1e-15 and its neighbour are then some 1e-5 apart, and equ
 
 TOLD_APART = 1e-6
 """The same of solutions that are as many as the equations have roots: none is missing if they are told apart. Two that
-are `members.NEXT` together or nearer, and one but for `members.MIDWAY`, are below 8e-7."""
+are `root_neighbours.NEXT` together or nearer, and one but for its MIDWAY, are below 8e-7."""
 
 ROUNDED = 1e-14
 """Residual above which an elimination's solution is polished: it then does not depend on the poses beside it."""

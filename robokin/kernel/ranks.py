@@ -6,8 +6,8 @@ configurations are known more or less well, and an error e of a joint value make
 zero.
 
 Other questions than that of a rank have numbers of their own: from where on solutions may be lost (`window.SINGULAR`,
-`members.UNRESOLVED`), rows of two equations (`equation_pair.RANK`), paths of complex joint values (`complex_newton`),
-couplings (`coupled_robot.SINGULAR`, of numbers that are written).
+`root_neighbours.UNRESOLVED`), rows of two equations (`equation_pair.RANK`), paths of complex joint values
+(`complex_newton`), couplings (`coupled_robot.SINGULAR`, of numbers that are written).
 """
 
 from __future__ import annotations

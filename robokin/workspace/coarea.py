@@ -29,10 +29,11 @@ from robokin.arrays import Array, Flags
 from robokin.jobs.ordered_map import ordered_map
 from robokin.kernel.frames import pose
 from robokin.kernel.geometric_jacobian import motion
+from robokin.spatial.angles import TURN, circled
 from robokin.workspace.placing_joints import closed_form_of
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.sizes import Measure
-from robokin.workspace.space import PROBES, TURN, Space
+from robokin.workspace.space import PROBES, Space
 from robokin.workspace.strata import stratified
 from robokin.workspace.two_joints import two_joint_measure
 
@@ -187,7 +188,7 @@ def _share(space: Space, q: Array, p: Array, several: bool) -> Array:
     turn = TURN if form.chain.revolute[0] else np.inf
     apart = found - q.T[index]
     scale = np.where(form.chain.revolute, 1.0, form.size)
-    wrapped = np.where(form.chain.revolute, apart - TURN * np.round(apart / TURN), apart)
+    wrapped = circled(apart, form.chain.revolute)
     other = np.max(np.abs(wrapped) / scale, axis=1) > OWN
     index, shift = index[other], wrapped[other, 0]
     counted = np.ones(len(index), dtype=bool)

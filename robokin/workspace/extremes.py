@@ -33,11 +33,12 @@ from robokin.arrays import Array, Flags, Index
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import held_at
 from robokin.kernel.facts import fact
+from robokin.spatial.angles import TURN
 from robokin.workspace.geared_extremes import geared_best
 from robokin.workspace.goals import Goals, derivatives
 from robokin.workspace.sampling import joint_values, moving_chain, positions
 from robokin.workspace.sizes import Extent
-from robokin.workspace.space import TURN, Space
+from robokin.workspace.space import Space
 from robokin.workspace.trusted_steps import Freed, polished
 
 SAMPLES = 1 << 14

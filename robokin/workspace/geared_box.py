@@ -11,9 +11,8 @@ import numpy as np
 from robokin.arrays import Array, Flags
 from robokin.errors import InputError, shown
 from robokin.model import CoupledRobot
+from robokin.spatial.angles import TURN
 from robokin.workspace.half_spaces import ROUNDING, HalfSpaces
-
-TURN = 2.0 * np.pi
 
 TURNS_BACK = 64
 """Turns of a variable after which all that it moves stands as before, at most: ratios of a gear's teeth are smaller."""

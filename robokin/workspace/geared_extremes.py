@@ -18,11 +18,12 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.kernel.chain import Chain
 from robokin.kernel.frames import frames
+from robokin.spatial.angles import TURN
 from robokin.workspace.geared_starts import spread_to_limits
 from robokin.workspace.goals import Goals, derivatives
 from robokin.workspace.half_spaces import HalfSpaces
 from robokin.workspace.sampling import moving_chain, moving_cuts, moving_gears
-from robokin.workspace.space import TURN, Space
+from robokin.workspace.space import Space
 from robokin.workspace.trusted_steps import STILL, Freed, polished
 
 STARTS = 32

@@ -14,10 +14,11 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.kernel.facts import fact
 from robokin.model import CoupledRobot
+from robokin.spatial.angles import TURN, circled
 from robokin.workspace.half_spaces import HalfSpaces
 from robokin.workspace.placing_joints import ClosedForm
 from robokin.workspace.sampling import moved_rows, moving_cuts, moving_gears
-from robokin.workspace.space import TURN, Space
+from robokin.workspace.space import Space
 
 ON_LIMIT = 1e-9
 """By how much [rad | size] a solution may be beyond its limits: the closed forms' rounding."""
@@ -50,7 +51,7 @@ class Unwinding:
 
     def __call__(self, index: Index, v: Array) -> tuple[Index, Array]:
         """All that are within limits, (s,) and (s, n), for the values v (k, n) of points `index` (k,), rising."""
-        v = np.where(self.turning, v - TURN * np.round(v / TURN), v)
+        v = circled(v, self.turning)
         low, high, room = self.low[:, None], self.high[:, None], self.room
         which, values = [np.zeros(0, dtype=np.intp)], [np.zeros((0, len(self.low)))]
         for turn in self.whole:

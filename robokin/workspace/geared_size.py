@@ -15,6 +15,7 @@ from functools import partial
 import numpy as np
 
 from robokin.arrays import Array
+from robokin.spatial.angles import circled
 from robokin.workspace.descent import REACHED
 from robokin.workspace.geared_extremes import geared_best
 from robokin.workspace.geared_slopes import GearedSlopes
@@ -23,7 +24,7 @@ from robokin.workspace.goals import Goals
 from robokin.workspace.sampling import joint_values, moving_cuts
 from robokin.workspace.size_cells import RISK, poisson_limit
 from robokin.workspace.sizes import Measure
-from robokin.workspace.space import TURN, Space
+from robokin.workspace.space import Space
 from robokin.workspace.strata import stratified
 from robokin.workspace.two_joints import integrated
 
@@ -130,9 +131,7 @@ def _others(space: Space, drawn: Array) -> Array:
     ends = q.reshape(n, many, m)
 
     def apart(a: Array, b: Array) -> Array:
-        gap = a - b
-        gap = np.where(full, gap - TURN * np.round(gap / TURN), gap)
-        return np.asarray(np.max(np.abs(gap) / slopes.scale, axis=0) > OWN)
+        return np.asarray(np.max(np.abs(circled(a - b, full)) / slopes.scale, axis=0) > OWN)
 
     found = np.zeros(m)
     new = far <= REACHED**2

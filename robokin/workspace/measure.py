@@ -23,6 +23,7 @@ import numpy as np
 from robokin.arrays import Array, Flags
 from robokin.jobs.ordered_map import ordered_map
 from robokin.model import CoupledRobot, Robot
+from robokin.spatial.angles import TURN
 from robokin.workspace.coarea import coarea_measure
 from robokin.workspace.descent import descent_of
 from robokin.workspace.geared_form import one_by_one
@@ -32,7 +33,7 @@ from robokin.workspace.region import Region, region_of
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.size_cells import RISK, Cells, cells_of, points_in, poisson_limit
 from robokin.workspace.sizes import Extent, Measure
-from robokin.workspace.space import TURN, Space
+from robokin.workspace.space import Space
 from robokin.workspace.witnesses import denied_share
 
 DRAWINGS = 8

@@ -24,9 +24,10 @@ from robokin.arrays import Array, Flags
 from robokin.kernel.chain import Chain
 from robokin.kernel.geometric_jacobian import motion
 from robokin.kernel.ranks import RANK
+from robokin.spatial.angles import TURN
 from robokin.workspace.placing_joints import ClosedForm
 from robokin.workspace.sampling import moving_chain
-from robokin.workspace.space import TURN, Space
+from robokin.workspace.space import Space
 
 PARALLEL = 1e-9
 """How far a unit vector may lean from another and be parallel to it."""

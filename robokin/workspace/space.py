@@ -15,10 +15,9 @@ from robokin.kernel.frames import frames
 from robokin.kernel.geometric_jacobian import jacobian_of
 from robokin.kernel.ranks import RANK
 from robokin.model import CoupledRobot, Robot
+from robokin.spatial.angles import TURN
 from robokin.workspace.geared_box import geared_box
 from robokin.workspace.half_spaces import HalfSpaces
-
-TURN = 2.0 * np.pi
 
 STILL = 1e-9
 """A joint that moves the origin by less, as a part of the arm's size, does not move it."""

@@ -13,6 +13,7 @@ from robokin.arrays import Array, Flags, Index
 from robokin.jobs.sequences import unit_points
 from robokin.kernel.chain import Chain
 from robokin.kernel.geometric_jacobian import motion
+from robokin.spatial.angles import TURN
 
 KEPT = 1 << 15
 """Sampled configurations."""
@@ -34,8 +35,6 @@ LOOKED_AT = 12
 THIN = 1e-6
 """Least side of a table, as a part of how far from the axis it lies: what the first joint leaves alone may be one
 point, of which samples differ by rounding."""
-
-TURN = 2.0 * np.pi
 
 
 class Starts:

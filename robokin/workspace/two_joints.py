@@ -24,9 +24,10 @@ from functools import partial
 import numpy as np
 
 from robokin.arrays import Array
+from robokin.spatial.angles import TURN, circled
 from robokin.workspace.sampling import moving_chain
 from robokin.workspace.sizes import Measure
-from robokin.workspace.space import TURN, Space
+from robokin.workspace.space import Space
 
 ALIKE = 1e-6
 """Heights and distances [size] that differ by less under a reflection are the same: tables are printed to some five
@@ -195,7 +196,7 @@ def _edges(pair: _Pair, both: float | None, second: tuple[float, float, bool], f
 def _above(pair: _Pair, both: float, level: float, q2: Array) -> Array:
     """(m,) how much more than `level` the other configuration needs of the first joint, to half a turn if it turns."""
     apart = pair.shift(q2, both - q2) - level
-    return apart - TURN * np.round(apart / TURN) if pair.turns[0] else apart
+    return circled(apart) if pair.turns[0] else apart
 
 
 def _crossed(g: Callable[[Array], Array], x: Array) -> Array:

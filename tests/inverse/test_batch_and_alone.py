@@ -14,7 +14,7 @@ from inverse import arms, judge
 
 import robokin
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.self_motion.null_motion import straight_line
+from robokin.inverse.self_motion.straight_motions import straight_line
 
 
 def singular_poses(number):

@@ -21,7 +21,7 @@ from robokin.inverse.closed_form.three_parallel_axes import ThreeParallel
 from robokin.inverse.elimination.homotopy import Homotopy
 from robokin.inverse.elimination.loop import loop_of
 from robokin.inverse.elimination.monodromy import two_starts
-from robokin.inverse.self_motion.null_motion import null_spaces
+from robokin.inverse.self_motion.tangent_cone import null_spaces
 from robokin.inverse.verify import Found, nothing
 from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.residual import error_and_jacobian

@@ -13,7 +13,7 @@ from robokin.inverse.elimination.splits import Elimination, elimination_of
 from robokin.inverse.numeric.least_squares import descend
 from robokin.inverse.second_look import look_again
 from robokin.inverse.self_motion.fold import to_multiple_roots
-from robokin.inverse.self_motion.null_motion import least_squares
+from robokin.inverse.self_motion.pose_correction import least_squares
 from robokin.inverse.solve_blocks import rows_of
 from robokin.inverse.verify import nothing
 from robokin.inverse.window import least_singular_values, nearly_singular

@@ -31,6 +31,7 @@ from robokin.inverse.numeric.position_first import (
 from robokin.inverse.numeric.second_order import go_down
 from robokin.inverse.numeric.turn_in_place import turned_in_place
 from robokin.kernel.chain import Chain
+from robokin.spatial.angles import circled
 
 MoreStarts = tuple[Index, Array]
 """More initial guesses: the targets (s,) that they are for and the configurations (s, n) [rad | m]."""
@@ -225,8 +226,7 @@ def _leaders(distance: Array, angle: Array, move: Array) -> Index:
 
 def _moves(chain: Chain, x: Array, home: Array, own: int) -> Array:
     """(m, k) the greatest joint move from home (n,) to x: (m, k, n) [rad | size], angles on the circle."""
-    move = (x - home)[:, :, :own]
-    move = np.where(chain.revolute[:own], move - 2.0 * np.pi * np.round(move / (2.0 * np.pi)), move)
+    move = circled((x - home)[:, :, :own], chain.revolute[:own])
     farthest: Array = np.max(np.abs(move), axis=2)
     return farthest
 

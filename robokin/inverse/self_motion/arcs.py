@@ -21,7 +21,7 @@ import numpy as np
 
 from robokin.arrays import Array, Index
 from robokin.inverse.self_motion.curve_tracing import Curve
-from robokin.inverse.self_motion.null_motion import CLOSES, corrected
+from robokin.inverse.self_motion.pose_correction import CLOSES, corrected
 from robokin.inverse.self_motion.track import CROSSING, ROUNDING, Tracks, zeros
 from robokin.inverse.solutions import Arc
 from robokin.kernel.chain import Chain

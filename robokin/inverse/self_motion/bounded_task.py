@@ -16,7 +16,7 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis
-from robokin.inverse.self_motion.null_motion import CLOSES, SETTLED, errors, scale_of
+from robokin.inverse.self_motion.pose_correction import CLOSES, SETTLED, errors, scale_of
 from robokin.inverse.verify import Found, wrapped
 from robokin.kernel.frames import pose
 from robokin.kernel.ranks import TASK_RANK

@@ -18,7 +18,7 @@ import numpy as np
 
 from robokin.arrays import Array, Index
 from robokin.inverse.self_motion.curve_tracing import Curve
-from robokin.inverse.self_motion.null_motion import errors
+from robokin.inverse.self_motion.pose_correction import errors
 from robokin.inverse.self_motion.track import Tracks, least
 from robokin.kernel.chain import Chain
 from robokin.kernel.ranks import ROOT_RANK

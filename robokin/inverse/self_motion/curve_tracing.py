@@ -2,7 +2,7 @@
 
 Statement. Given configurations and the directions of the curves that leave them, follow the curves.
 Derivation. Where two joints have one axis, or only joints slide, the curve is a straight line, known exactly
-(`null_motion.straight_line`).
+(`straight_motions.straight_line`).
 All others are followed step by step (`fronts`).
 Degenerate case. Lines of sliding joints never close: they end at bounds.
 
@@ -17,12 +17,8 @@ import numpy as np
 
 from robokin.arrays import Array, Flags
 from robokin.inverse.self_motion.fronts import TRIAL_STEPS, Fronts, reach_of
-from robokin.inverse.self_motion.null_motion import (
-    CLOSES,
-    errors,
-    scale_of,
-    straight_line,
-)
+from robokin.inverse.self_motion.pose_correction import CLOSES, errors, scale_of
+from robokin.inverse.self_motion.straight_motions import straight_line
 from robokin.kernel.chain import Chain
 
 BESIDE = 0.05

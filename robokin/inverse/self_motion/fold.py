@@ -31,7 +31,8 @@ from typing import NamedTuple
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.inverse.self_motion.null_motion import brackets, errors, scale_of
+from robokin.inverse.self_motion.pose_correction import errors, scale_of
+from robokin.inverse.self_motion.tangent_cone import brackets
 from robokin.kernel.chain import Chain
 
 STEPS = 12

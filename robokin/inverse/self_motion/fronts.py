@@ -7,7 +7,7 @@ where the tangent turns by more than some 11° or the correction is large. Towar
 curves, where a second singular value vanishes, steps get shorter, so that a mere approach is followed round its bend.
 Where two fronts of a curve face each other, modulo full turns, they step towards each other; where the one lands on
 the other the curve is closed.
-Degenerate case. At a crossing the Jacobian has two null vectors; of the directions of the tangent cone (`null_motion`)
+Degenerate case. At a crossing the Jacobian has two null vectors; of the directions of the tangent cone (`tangent_cone`)
 the one that goes straight on is taken. Curves that pass within some 4e-3 [rad | size] of each other without a
 crossing may be taken to cross.
 Reference: E. L. Allgower, K. Georg, "Introduction to Numerical Continuation Methods", SIAM 2003, chapters 6 and 8.
@@ -22,18 +22,10 @@ from functools import cached_property
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
-from robokin.inverse.self_motion.null_motion import (
-    CLOSES,
-    SLOW_STEPS,
-    STEPS,
-    cone,
-    corrected,
-    errors,
-    scale_of,
-)
+from robokin.inverse.self_motion.pose_correction import CLOSES, SLOW_STEPS, STEPS, corrected, errors, scale_of
+from robokin.inverse.self_motion.tangent_cone import cone
 from robokin.kernel.chain import Chain
-
-TURN = 2.0 * np.pi
+from robokin.spatial.angles import TURN, circled
 
 FIRST = 0.05
 """Length of the first step [rad | size]."""
@@ -170,7 +162,7 @@ class Fronts:
     def _gaps(self, rows: Index) -> Array:
         """(k, n) from the fronts in rows to their partners, modulo full turns."""
         gap = self.x[(rows + self.s) % (2 * self.s)] - self.x[rows]
-        return np.asarray(np.where(self.chain.revolute, gap - TURN * np.round(gap / TURN), gap))
+        return circled(gap, self.chain.revolute)
 
     def _meet(self) -> None:
         """Steps shortened so that fronts that face each other meet half way; those that have met are done."""

@@ -19,13 +19,15 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.numeric.least_squares import descend
+from robokin.inverse.self_motion.chosen_members import SelfMotion
 from robokin.inverse.self_motion.curve_crossings import crossings
 from robokin.inverse.self_motion.curve_tracing import Curve
-from robokin.inverse.self_motion.members import SelfMotion, listed_once
-from robokin.inverse.self_motion.solution_sets import families, on_curve, turned_gap
+from robokin.inverse.self_motion.members import listed_once
+from robokin.inverse.self_motion.solution_sets import families, on_curve
 from robokin.inverse.verify import CLOSES, Found, merged
 from robokin.kernel.chain import Chain
 from robokin.kernel.residual import error_and_jacobian
+from robokin.spatial.angles import circled
 
 ROUNDS = 4
 """How often curves are followed from crossings with known ones: a curve that is three crossings away is rare."""
@@ -137,7 +139,7 @@ def _searched(chain: Chain, T: Array, size: float) -> Found:
 
 def _new(chain: Chain, T: Array, ends: Array, q: Array, motions: list[SelfMotion], size: float) -> Array:
     """Which of solutions (k, n) [rad | m] are neither listed, in q (s, n), nor on a self-motion that is known."""
-    gap = turned_gap(chain, (ends[:, None] - q[None]) / np.where(chain.revolute, 1.0, size))
+    gap = circled((ends[:, None] - q[None]) / np.where(chain.revolute, 1.0, size), chain.revolute)
     ends = ends[np.all(np.max(np.abs(gap), axis=2) > KNOWN, axis=1)]
     return np.asarray(ends[~_on(chain, T, ends, motions, size)])
 

@@ -19,12 +19,13 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.arcs import pieces
 from robokin.inverse.self_motion.curve_tracing import Curve
-from robokin.inverse.self_motion.fronts import LONGEST, TURN
-from robokin.inverse.self_motion.null_motion import CLOSES, corrected, errors
-from robokin.inverse.self_motion.solution_sets import on_curve, turned_gap
+from robokin.inverse.self_motion.fronts import LONGEST
+from robokin.inverse.self_motion.pose_correction import CLOSES, corrected, errors
+from robokin.inverse.self_motion.solution_sets import on_curve
 from robokin.inverse.self_motion.track import KINK, PARTS, Tracks, least
 from robokin.kernel.chain import Chain
 from robokin.kernel.ranks import ROOT_RANK
+from robokin.spatial.angles import TURN, circled
 
 SLACK = 1.1
 """What a curve's pieces are longer than their chords, at most."""
@@ -340,7 +341,7 @@ def _nearest_on_surface(tracks: Tracks, T: Array, curve: Curve, wish: Array) -> 
     kept = x[tracks.is_inside(x)]
     for _ in range(WALK):
         gap = np.zeros_like(x)
-        gap[:, :own] = turned_gap(chain, np.pad(wish - x[:, :own], ((0, 0), (0, chain.n - own))))[:, :own]
+        gap[:, :own] = circled(wish - x[:, :own], chain.revolute[:own])
         _, J = errors(chain, many, x, tracks.size)
         values, Vt = np.linalg.svd(J)[1:]
         felt = Vt[:, : values.shape[1]] * (values > ROOT_RANK)[:, :, None]

@@ -14,8 +14,8 @@ import numpy as np
 from robokin.arrays import Array, Flags
 from robokin.inverse.analysis import Analysis
 from robokin.inverse.numeric.closing import DONE, EXACT_STEPS, newton_within
-from robokin.inverse.self_motion.members import NEIGHBOURS, UNRESOLVED
-from robokin.inverse.self_motion.null_motion import corrected
+from robokin.inverse.self_motion.pose_correction import corrected
+from robokin.inverse.self_motion.root_neighbours import NEIGHBOURS, UNRESOLVED
 from robokin.inverse.verify import Found, wrapped
 from robokin.inverse.window import least_singular_values
 from robokin.kernel.residual import error_and_jacobian
@@ -28,7 +28,7 @@ STANDS = 0.01
 """Part of a null vector that a joint must have to be brought into its limits along it: else the others go too far."""
 
 FREE = 1e-4
-"""Singular values below this belong to what is free: those of a root and what is within `members.NEIGHBOURS` of it."""
+"""Singular values below this belong to what is free: those of a root and what is within `NEIGHBOURS` of it."""
 
 AS_EXACT = 1e-13
 """Error [size and rad] of a configuration within the limits that is as good as such a solution."""

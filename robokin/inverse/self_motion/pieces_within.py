@@ -22,7 +22,7 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.bounded_task import BoundedTask
-from robokin.inverse.self_motion.null_motion import CLOSES, errors
+from robokin.inverse.self_motion.pose_correction import CLOSES, errors
 from robokin.inverse.self_motion.spread import well_spread
 from robokin.inverse.verify import SAME, Found, wrapped
 

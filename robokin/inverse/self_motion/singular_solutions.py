@@ -3,7 +3,7 @@
 Statement. Given configurations that reach a pose, tell which stand alone, which count twice, and follow the sets that
 the others are on.
 Derivation. With a Jacobian of full rank the solutions are a manifold of as many dimensions as there are joints more
-than six. Otherwise the directions of the tangent cone are tried (`null_motion`), and a set is followed along those
+than six. Otherwise the directions of the tangent cone are tried (`tangent_cone`), and a set is followed along those
 that close (`curve_tracing`). What does not is a root on its own, mostly a double one (`fold`).
 Degenerate case. Of a set of more dimensions only the curves are followed on which one joint of a basis moves and the
 others of the basis are locked.
@@ -21,18 +21,9 @@ from robokin.arrays import Array, Flags, Index
 from robokin.inverse.numeric.nearest import few_joints
 from robokin.inverse.self_motion.curve_tracing import Curve, leads_away, trace_many
 from robokin.inverse.self_motion.fold import SLIGHT_BEND, to_fold, to_multiple_roots
-from robokin.inverse.self_motion.null_motion import (
-    CLOSES,
-    SLOW_STEPS,
-    cone,
-    cones,
-    corrected,
-    errors,
-    follows,
-    null_spaces,
-    scale_of,
-    straight_line,
-)
+from robokin.inverse.self_motion.pose_correction import CLOSES, SLOW_STEPS, corrected, errors, scale_of
+from robokin.inverse.self_motion.straight_motions import straight_line
+from robokin.inverse.self_motion.tangent_cone import cone, cones, follows, null_spaces
 from robokin.kernel.chain import Chain
 from robokin.kernel.ranks import RANK, ROOT_RANK
 

@@ -21,11 +21,12 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.curve_tracing import BESIDE, Curve
-from robokin.inverse.self_motion.fronts import LONGEST, SAME, TURN
-from robokin.inverse.self_motion.null_motion import CLOSES, SLOW_STEPS, corrected, errors, scale_of
+from robokin.inverse.self_motion.fronts import LONGEST, SAME
+from robokin.inverse.self_motion.pose_correction import CLOSES, SLOW_STEPS, corrected, errors, scale_of
 from robokin.inverse.self_motion.singular_solutions import Local, stand_alone, suspected, traced_sets
 from robokin.kernel.chain import Chain
 from robokin.kernel.ranks import ROOT_RANK
+from robokin.spatial.angles import circled
 
 FEW = 4
 """Seeds of one target that are followed at the same time: most targets have no more curves."""
@@ -206,11 +207,6 @@ def on_curve(curve: Curve, chain: Chain, T: Array, q: Array, size: float) -> Fla
     return on
 
 
-def turned_gap(chain: Chain, gap: Array) -> Array:
-    """Differences of joint values (..., n) [rad | size], those of angles in [-π, π]."""
-    return np.asarray(np.where(chain.revolute, gap - TURN * np.round(gap / TURN), gap))
-
-
 def _passes(curves: list[Curve], chain: Chain, T: Array, x: Array, size: float) -> tuple[Index, Array]:
     """Where each of m curves at T (m, 4, 4) passes through its x (m, n): rows (k,) of x, tangents (k, n) there.
 
@@ -225,10 +221,10 @@ def _passes(curves: list[Curve], chain: Chain, T: Array, x: Array, size: float) 
     rows, foot, t = (np.concatenate(column) for column in zip(*parts, strict=True))
     if not len(rows):
         return rows, t
-    off = turned_gap(chain, x[rows] - foot)
+    off = circled(x[rows] - foot, chain.revolute)
     start = foot + np.einsum("ij,ij->i", off, t)[:, None] * t
     landed, left, _ = corrected(chain, T[rows], start, size, t[:, None], SLOW_STEPS)
-    miss = np.max(np.abs(turned_gap(chain, landed - x[rows])), axis=1)
+    miss = np.max(np.abs(circled(landed - x[rows], chain.revolute)), axis=1)
     # A point of the curve itself needs no correction, which at a crossing would lead astray.
     on = ((miss <= SAME) & (left <= CLOSES)) | (np.max(np.abs(off), axis=1) <= SAME)
     return rows[on], t[on]
@@ -238,7 +234,7 @@ def _feet(curve: Curve, chain: Chain, x: Array) -> tuple[Index, Array, Array]:
     """The points (k, n) of a curve's polyline that are beside x (m, n), which rows (k,) of x, the tangents (k, n)."""
     points = curve.x
     chord = np.diff(points, axis=0)
-    gap = turned_gap(chain, x[:, None] - points[:-1])
+    gap = circled(x[:, None] - points[:-1], chain.revolute)
     along = np.clip(np.einsum("mkj,kj->mk", gap, chord) / np.einsum("kj,kj->k", chord, chord), 0.0, 1.0)
     distance = np.linalg.norm(gap - along[:, :, None] * chord, axis=2)
     edge = np.full((len(x), 1), np.inf)
@@ -255,7 +251,7 @@ def walks_to(chain: Chain, T: Array, start: Array, ends: Array, size: float) -> 
     reached, on = np.zeros(len(ends), dtype=bool), np.arange(len(ends))
     x = np.tile(start, (len(ends), 1))
     for _ in range(WALK):
-        gap = turned_gap(chain, ends[on] - x)
+        gap = circled(ends[on] - x, chain.revolute)
         distance = np.linalg.norm(gap, axis=1)
         near = distance <= SAME
         reached[on[near]] = True

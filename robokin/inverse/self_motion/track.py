@@ -22,11 +22,11 @@ from numpy.polynomial import chebyshev
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.curve_tracing import MOVES, Curve
-from robokin.inverse.self_motion.fronts import TURN
-from robokin.inverse.self_motion.null_motion import corrected, scale_of
+from robokin.inverse.self_motion.pose_correction import corrected, scale_of
 from robokin.inverse.verify import HALF_TURN
 from robokin.kernel.chain import Chain
 from robokin.model.robot import LIMIT_TOLERANCE
+from robokin.spatial.angles import TURN
 
 PARTS = 8
 """Samples a piece between two points: some 0.02 [rad | size] apart."""

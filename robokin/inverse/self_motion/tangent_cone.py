@@ -1,7 +1,7 @@
 """Near one configuration: which joint motions keep the pose, to first, to second order and indeed.
 
 Statement. At a configuration x that reaches a pose, find the directions of the curves of configurations through x
-that reach it too, and correct a configuration near such a curve.
+that reach it too.
 Derivation. With the twists S_j (linear, angular) of the joints in the axes of the base, taken at the tool, the pose
 along x + v t + ½ a t² moves by J v in the first order and by J a + P(v), P(v) = Σ_{i<j} [S_i, S_j] v_i v_j, in the
 second, as joint i moves all joints after it: ∂S_j/∂q_i = [S_i, S_j] for i < j, and
@@ -15,8 +15,7 @@ of the null space the solutions form a surface. Whether a curve follows a direct
 brought back by Newton steps in the plane through the step's end at right angles to it, must close.
 Degenerate case. A fold (two solutions that merge) has a null vector, and U P(v) is not zero. Contacts of higher order
 look like curves to second order; the step along them does not close.
-Reference: E. L. Allgower, K. Georg, "Introduction to Numerical Continuation Methods", SIAM 2003, chapters 2, 8;
-A. Müller, "Higher-order analysis of kinematic singularities of lower pair linkages and serial manipulators",
+Reference: A. Müller, "Higher-order analysis of kinematic singularities of lower pair linkages and serial manipulators",
 J. Mechanisms and Robotics 10(1), 2018, for the tangent cone.
 
 Here x are joint values [rad | size] and lengths are in the arm's size.
@@ -28,31 +27,12 @@ import math
 
 import numpy as np
 
-from robokin.arrays import Array, Flags, Index
+from robokin.arrays import Array, Flags
 from robokin.inverse.numeric.nearest import few_joints
+from robokin.inverse.self_motion.pose_correction import CLOSES, SLOW_STEPS, corrected, least_squares
+from robokin.inverse.self_motion.straight_motions import coaxial_pairs
 from robokin.kernel.chain import Chain
-from robokin.kernel.damped_newton import limited
 from robokin.kernel.ranks import ROOT_RANK
-from robokin.kernel.residual import error_and_jacobian
-
-SETTLED = 1e-13
-"""Error [size and rad] at which Newton steps end: some hundred times the rounding of the pose."""
-
-CLOSES = 5e-10
-"""The greatest part of the error [size and rad] up to which a configuration reaches the pose: its length is then below
-1e-9, which a solution may have. A pose that was printed and read again is off by as much."""
-
-STEPS = 8
-"""Newton steps of a correction at most: three do on a curve, as the error is squared each time."""
-
-SLOW_STEPS = 40
-"""The same where the solutions count twice along a curve: each step halves the error, from 1e-3 to below 1e-10."""
-
-IDLE, IDLE_STEPS = 0.02, 4
-"""Newton steps end after so many in a row by which the error changed by less than this part of itself."""
-
-LONGEST = 0.3
-"""The longest Newton step of a joint [rad | size]: farther off the tangent says nothing of the curve."""
 
 PROBES = (0.05, 0.01)
 """Lengths of the steps [rad | size] that try whether a curve follows a direction. After 0.01 the second order of a
@@ -76,124 +56,6 @@ CIRCLE_STEPS = 60
 
 DRAWN = 48
 """Random null vectors from which zeros of P(v) are sought where the null space has three dimensions or more."""
-
-
-PLAIN = 1e-3
-"""Least singular value from which a step may come from the normal equations: it is then off by a millionth of itself at
-most, and the next step makes up for that."""
-
-TRIFLE = 1e-13
-"""What is added to the diagonals of normal equations, as a part of their sum: some hundred times the rounding."""
-
-NO_TRIFLE = 1e4
-"""How many times that the square of a singular value must be: the trifle then changes a step by 1e-4 at most."""
-
-
-def scale_of(chain: Chain, size: float) -> Array:
-    """(n,) what joint values q are divided by [1 | m] to be x."""
-    return np.where(chain.revolute, 1.0, size)
-
-
-def errors(chain: Chain, T: Array, x: Array, size: float) -> tuple[Array, Array]:
-    """The error (s, 6) against poses T: (s, 4, 4) and the Jacobian (s, 6, n) at x (s, n) [rad | size]."""
-    return error_and_jacobian(chain, T, x * scale_of(chain, size), size)
-
-
-def least_squares(A: Array, b: Array, zero: float = ROOT_RANK) -> Array:
-    """(s, n) the shortest solution of A (s, m, n) dx = b (s, m), singular values up to `zero` left out.
-
-    Where none is below `PLAIN` the normal equations have the digits that a Newton step needs, and take a tenth of the
-    time that singular values take.
-    """
-    wide = A.shape[1] < A.shape[2]
-    At = np.swapaxes(A, 1, 2)
-    inverse, plain = normal_inverse(A @ At if wide else At @ A)
-    side = b[:, :, None]
-    dx: Array = (At @ (inverse @ side) if wide else inverse @ (At @ side))[:, :, 0]
-    if not plain.all():
-        rest = np.flatnonzero(~plain)
-        U, values, Vt = np.linalg.svd(A[rest], full_matrices=False)
-        kept = np.where(values > zero, 1.0 / np.maximum(values, zero), 0.0)
-        along = (b[rest][:, None, :] @ U)[:, 0] * kept
-        dx[rest] = (along[:, None, :] @ Vt)[:, 0]
-    return dx
-
-
-def normal_inverse(G: Array) -> tuple[Array, Flags]:
-    """G⁻¹ (s, k, k) for G = AᵀA or A Aᵀ, and (s,) whether no singular value of A is below `PLAIN`.
-
-    Where one is, what stands there is no inverse.
-    """
-    # An exactly singular matrix would stop all: a trifle on the diagonal, above rounding, keeps off zero pivots.
-    trifle = TRIFLE * np.einsum("sii->s", G) + TRIFLE
-    inverse = np.linalg.inv(G + trifle[:, None, None] * np.eye(G.shape[1]))
-    # The greatest singular value of an inverse is at most its Frobenius norm. Beside long slides the trifle is none.
-    least = np.maximum(PLAIN**2, NO_TRIFLE * trifle)
-    plain = np.einsum("sij,sij->s", inverse, inverse) * least * least < 1.0
-    return inverse, plain
-
-
-def corrected(
-    chain: Chain,
-    T: Array,
-    x: Array,
-    size: float,
-    normals: Array | None = None,
-    steps: int | Index = STEPS,
-    settled: float = SETTLED,
-    zero: float = ROOT_RANK,
-) -> tuple[Array, Array, Array]:
-    """Newton steps from x (s, n) onto the configurations that reach T: (s, 4, 4).
-
-    normals: (s, k, n), directions that x keeps its place along; steps: at most, of all or of each (s,); settled: the
-    error at which steps end; zero: what a singular value must exceed to count. Not `damped_newton.brought_down`: there
-    is no damping, which would draw x along the curve, and what counts is the last step that is not rounding, not the
-    least error. Returns x (s, n)
-    [rad | size], the greatest part of the error left (s,) and the Jacobian there (s, 6, n).
-    """
-    e, J = errors(chain, T, x, size)
-    off = np.max(np.abs(e), axis=1)
-    rows = np.flatnonzero(off > settled)
-    many = np.broadcast_to(np.asarray(steps), len(off))[rows]
-    if not len(rows):
-        return x, off, J
-    x = np.array(x)
-    # What is still moved, by its rows: x, T, the equations and what the error was.
-    here, target, before = x[rows], T[rows], off[rows]
-    extra = 0 if normals is None else normals.shape[1]
-    A, b = np.zeros((len(rows), 6 + extra, x.shape[1])), np.zeros((len(rows), 6 + extra))
-    A[:, :6], b[:, :6] = J[rows], e[rows]
-    if normals is not None:
-        A[:, 6:] = normals[rows]
-    factor, idle = np.ones(len(rows)), np.zeros(len(rows), dtype=np.intp)
-    for step in range(1, int(np.max(many)) + 1):
-        dx = limited(least_squares(A, b, zero), LONGEST)
-        new = here + dx * factor[:, None]
-        e_new, J_new = errors(chain, target, new, size)
-        after = np.max(np.abs(e_new), axis=1)
-        # Once close, a step that gains nothing is rounding; it would only wander.
-        better = (after < before) | (before > CLOSES)
-        whole = bool(better.all())
-        went = rows if whole else rows[better]
-        x[went], off[went], J[went] = (new, after, J_new) if whole else (new[better], after[better], J_new[better])
-        # At a double root each step halves the distance and leaves a fourth of the error: twice the step goes there.
-        double = (after > 0.2 * before) & (after < 0.3 * before)
-        # What is left of an error in directions that are left out stays as it is.
-        idle = np.where(np.abs(after - before) < IDLE * before, idle + 1, 0)
-        on = np.where(better, (after > settled) & (idle < IDLE_STEPS), factor > 1.0) & (step < many)
-        factor = np.where(double, 2.0, 1.0)
-        if whole:
-            here, before = new, after
-            A[:, :6], b[:, :6] = J_new, e_new
-        else:
-            here, before = np.where(better[:, None], new, here), np.where(better, after, before)
-            A[better, :6], b[better, :6] = J_new[better], e_new[better]
-        if not on.all():
-            if not on.any():
-                break
-            rows, here, target, before = rows[on], here[on], target[on], before[on]
-            A, b, factor, idle, many = A[on], b[on], factor[on], idle[on], many[on]
-    return x, off, J
 
 
 def brackets(J: Array) -> Array:
@@ -343,63 +205,3 @@ def follows(chain: Chain, T: Array, x: Array, ways: Array, size: float) -> Flags
         on = (off <= CLOSES) & (moved <= PROBE_CORRECTION * length)
         out[rows] = np.any(on.reshape(2, -1), axis=0)
     return out
-
-
-def coaxial_pairs(J: Array) -> Array:
-    """(k, n) the directions of length 1 in which two joints with one axis trade their motion, for J (6, n)."""
-    n = J.shape[1]
-    sign = np.where(J.T @ J > 0.0, -1.0, 1.0)
-    off = np.max(np.abs(J[:, :, None] + sign * J[:, None]), axis=0)
-    i, j = np.nonzero(np.triu(off <= COAXIAL, 1))
-    pairs = np.zeros((len(i), n))
-    rows = np.arange(len(i))
-    pairs[rows, i], pairs[rows, j] = 1.0, sign[i, j]
-    return np.asarray(pairs / np.sqrt(2.0))
-
-
-def straight_line(J: Array, way: Array) -> Array | None:
-    """The direction (n,) along which only joints with one axis, or only slides, trade their motion, if `way` (n,) is
-    one; else None.
-
-    Joints i < j with the same axis may turn against each other by any angle: what is between them turns about that
-    axis, which joint j keeps. Slides keep each other's directions. So the line x + s way reaches the pose for all s,
-    exactly.
-    """
-    moving = np.flatnonzero(np.abs(way) > 1e-7)
-    line = np.zeros(len(way))
-    if len(moving) > 1 and not J[3:, moving].any():
-        slides = _slides_at_rest(J[:3, moving])
-        line[moving] = slides @ (slides.T @ way[moving])
-        length = np.linalg.norm(line)
-        return line / length if length > 0.5 else None
-    if len(moving) != 2:
-        return None
-    a, b = J[:, moving[0]], J[:, moving[1]]
-    sign = 1.0 if float(a @ b) > 0.0 else -1.0
-    if float(np.max(np.abs(a - sign * b))) > COAXIAL:
-        return None
-    line[moving] = np.array([1.0, -sign]) * np.sign(way[moving[0]])
-    return line
-
-
-def _slides_at_rest(directions: Array) -> Array:
-    """(k, d) an orthonormal basis of what k slides with directions (3, k) do to each other without moving the tool."""
-    values, Vt = np.linalg.svd(directions)[1:]
-    return np.asarray(Vt[int(np.sum(values > COAXIAL)) :].T)
-
-
-def on_the_way_home(chain: Chain, J: Array, x: Array) -> tuple[Array, Flags]:
-    """x (s, n) with Jacobians J (s, 6, n) moved along straight lines of slides to what is nearest to their zeros, and
-    (s,) which are on such lines."""
-    slides = np.flatnonzero(~chain.revolute)
-    home, on_lines = np.array(x), np.zeros(len(x), dtype=bool)
-    for i in range(len(x)):
-        rest = _slides_at_rest(J[i][:3, slides])
-        home[i, slides] -= rest @ (rest.T @ x[i, slides])
-        on_lines[i] = rest.shape[1] > 0
-    return home, on_lines
-
-
-COAXIAL = 1e-8
-"""Two axes whose twists differ by less [size and rad] are one: over a turn they leave an error of a few of it, which
-the check of each point refuses where it matters."""
