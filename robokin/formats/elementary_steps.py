@@ -19,9 +19,10 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.errors import DescriptionError, ExpressionError, did_you_mean, shown
 from robokin.formats.chain_parts import ChainParts, limits_by_joint
+from robokin.formats.expression_tokens import MAX_LENGTH, tokenize
 from robokin.formats.joint_variables import VariableCell, shift_of
 from robokin.formats.node_values import Context, number_of, parameters_in
-from robokin.formats.number_expressions import MAX_LENGTH, Scope, names_parameters, tokenize
+from robokin.formats.number_expressions import Scope, names_parameters
 from robokin.formats.schema import MAX_ROWS
 from robokin.formats.transform_expressions import position_texts
 from robokin.formats.yaml_tree import FilePlace, Node, Scalar, describe

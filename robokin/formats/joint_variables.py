@@ -6,7 +6,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from robokin.errors import ExpressionError, or_list, shown
-from robokin.formats.number_expressions import NAME, RESERVED, Scope, Token, tokenize
+from robokin.formats.expression_tokens import NAME, Token, tokenize
+from robokin.formats.number_expressions import RESERVED, Scope
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from robokin.errors import ExpressionError
-from robokin.formats.number_expressions import Scope, Value, evaluate, tokenize
+from robokin.formats.expression_tokens import tokenize
+from robokin.formats.number_expressions import Scope, Value, evaluate
 
 
 @dataclass

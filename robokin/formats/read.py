@@ -9,10 +9,11 @@ from robokin.errors import DescriptionError, ExpressionError, InputError, did_yo
 from robokin.files import open_path, read_up_to
 from robokin.formats.description_head import Head
 from robokin.formats.excerpts import LINE_BREAK
+from robokin.formats.expression_tokens import NAME
 from robokin.formats.faults import Faults
 from robokin.formats.foreign_texts import other_format
 from robokin.formats.node_values import Context, choice_of, expression_text, fields_of, text_of
-from robokin.formats.number_expressions import NAME, RESERVED, Scope, Value
+from robokin.formats.number_expressions import RESERVED, Scope, Value
 from robokin.formats.parameters import Parameters
 from robokin.formats.schema import KINDS, MECHANISM, TREE, UNITS, VERSION, WHEELED
 from robokin.formats.yaml_tree import FilePlace, Mapping, Node, Scalar, describe, read_tree

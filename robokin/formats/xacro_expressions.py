@@ -14,12 +14,22 @@ lists of YAML files, of which parts are taken. Angles are in radians.
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from robokin.errors import ExpressionError, did_you_mean, shown
+from robokin.formats.xacro_meanings import (
+    CONSTANTS,
+    ELSEWHERE,
+    LOADERS,
+    METHODS,
+    WAY_OUT,
+    XACRO_FUNCTIONS,
+    bounded,
+    compared,
+    computed,
+)
 from robokin.formats.xacro_tables import (
     XacroAbsent,
     XacroList,
@@ -34,53 +44,13 @@ from robokin.formats.xacro_tables import (
 )
 
 MAX_EXPRESSION = 2000
-MAX_STRING = 20_000
+
 DEEPEST = 40
-LARGEST_WHOLE = 10**15
-"""A whole number beyond it is a float: none grows without bound."""
 
 PIECE = re.compile(
     r"\s*(?:(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(?![\w.])"
     r"|(?P<name>[A-Za-z_][\w.]*)|(?P<string>'[^'\\]*'|\"[^\"\\]*\")|(?P<symbol>\*\*|//|[=!<>]=|[-+*/%()<>,\[\]{}:.=]))"
 )
-
-MATHS = (
-    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "sqrt", "exp",
-    "log", "log10", "hypot", "fabs", "fmod", "pow", "radians", "degrees", "floor", "ceil", "trunc",
-)  # fmt: skip
-
-XACRO_FUNCTIONS: dict[str, Callable[..., XacroValue]] = {
-    **{name: getattr(math, name) for name in MATHS},
-    "abs": abs,
-    "min": min,
-    "max": max,
-    "round": round,
-    "int": int,
-    "float": float,
-    "str": lambda value: xacro_text(value),
-    "bool": bool,
-    "len": len,
-}
-METHODS: dict[str, Callable[..., XacroValue]] = {
-    **{name: getattr(str, name) for name in ("lower", "upper", "strip", "find", "startswith", "endswith")},
-    "split": lambda text, *at: XacroList(tuple(str.split(text, *at))),
-}
-"""Of strings; none of them makes more of a text than there is."""
-
-CONSTANTS: dict[str, XacroValue] = {
-    "pi": math.pi,
-    "tau": math.tau,
-    "e": math.e,
-    "True": True,
-    "False": False,
-    "true": True,
-    "false": False,
-}
-LOADERS = ("load_yaml", "xacro.load_yaml")
-ELSEWHERE = ("load_json", "list", "tuple", "set", "eval", "exec", "open", "lambda", "for")
-"""Names of Python's and xacro's that are refused with a word on what to do."""
-
-WAY_OUT = "nothing of a xacro file is run as Python; make a URDF of it with ROS's own xacro, and give that"
 
 WORDS = {"and", "or", "not", "if", "else", "in"}
 
@@ -176,14 +146,14 @@ class _XacroParser:
             negative, any_sign = not negative, True
         first = self.sum()
         result: XacroValue = first
-        compared = False
+        met = False
         while sign := self.accept("==", "!=", "<=", ">=", "<", ">", "in"):
             second = self.sum()
             if (absent := absent_of(first, second)) is not None:
                 return absent
-            holds = _compare(sign, first, second)
-            result = (bool(result) and holds) if compared else holds
-            first, compared = second, True
+            holds = compared(sign, first, second)
+            result = (bool(result) and holds) if met else holds
+            first, met = second, True
         if not any_sign or isinstance(result, XacroAbsent):
             return result
         return not result if negative else bool(result)
@@ -191,13 +161,13 @@ class _XacroParser:
     def sum(self) -> XacroValue:
         result = self.product()
         while sign := self.accept("+", "-"):
-            result = _computed(sign, result, self.product())
+            result = computed(sign, result, self.product())
         return result
 
     def product(self) -> XacroValue:
         result = self.signed()
         while sign := self.accept("*", "//", "/", "%"):
-            result = _computed(sign, result, self.signed())
+            result = computed(sign, result, self.signed())
         return result
 
     def signed(self) -> XacroValue:
@@ -217,7 +187,7 @@ class _XacroParser:
         self.depth += 1
         if self.depth > DEEPEST:
             raise ExpressionError(f"found more than {DEEPEST} powers of powers, expected fewer")
-        result = _computed("**", base, self.signed())
+        result = computed("**", base, self.signed())
         self.depth -= 1
         return result
 
@@ -312,7 +282,7 @@ class _XacroParser:
                 raise ExpressionError(f"found {name}(…), expected the name of one YAML file")
             return self.names.load(arguments[0])
         try:
-            return _bounded(XACRO_FUNCTIONS[plain](*arguments))
+            return bounded(XACRO_FUNCTIONS[plain](*arguments))
         except (TypeError, ValueError, ZeroDivisionError, OverflowError):
             plainly = [a for a in arguments if not isinstance(a, XacroTable | XacroList)]
             where = ", ".join(shown(xacro_text(argument)) for argument in plainly)
@@ -341,52 +311,3 @@ class _XacroParser:
             if not self.accept(",") and self.pieces[self.at][1] != ")":
                 raise ExpressionError("found no ')' after dict(…, expected it")
         return XacroTable(entries)
-
-
-def _compare(sign: str, a: XacroValue, b: XacroValue) -> bool:
-    """a == b and the like."""
-    if sign == "in":
-        if isinstance(b, str) and isinstance(a, str):
-            return a in b
-        if isinstance(b, XacroTable | XacroList):
-            return a in (b.entries if isinstance(b, XacroTable) else b.items)
-        raise ExpressionError("found 'in' before no table, expected a string, a table or a list after it")
-    if sign in ("==", "!="):
-        return (a == b) == (sign == "==")
-    try:
-        return {"<": a < b, "<=": a <= b, ">": a > b, ">=": a >= b}[sign]  # type: ignore[operator]
-    except TypeError:
-        raise ExpressionError("found a string compared with a number, expected two of a kind") from None
-
-
-def _computed(sign: str, a: XacroValue, b: XacroValue) -> XacroValue:
-    """a + b and the like. Raises ExpressionError where there is no such value."""
-    if (absent := absent_of(a, b)) is not None:
-        return absent
-    if sign == "+" and isinstance(a, str) and isinstance(b, str):
-        return _bounded(a + b)
-    a, b = as_xacro_number(a, f"'{sign}' beside"), as_xacro_number(b, f"'{sign}' beside")
-    try:
-        if sign == "**":
-            small = isinstance(a, int) and isinstance(b, int) and 0 <= b < 64 and abs(a) < 1 << 20
-            return _bounded(a**b if small else math.pow(a, b))
-        if sign in ("/", "//", "%"):
-            return _bounded(a / b if sign == "/" else a // b if sign == "//" else a % b)
-        return _bounded(a + b if sign == "+" else a - b if sign == "-" else a * b)
-    except (ZeroDivisionError, OverflowError, ValueError):
-        raise ExpressionError(f"found {a!r} {sign} {b!r}, expected numbers for which it has a value") from None
-
-
-def _bounded(value: XacroValue) -> XacroValue:
-    """The value, neither too long nor infinite."""
-    if isinstance(value, str):
-        if len(value) > MAX_STRING:
-            raise ExpressionError(f"found a string of {len(value)} characters, expected at most {MAX_STRING}")
-        return value
-    if isinstance(value, bool | XacroTable | XacroList | XacroAbsent):
-        return value
-    if isinstance(value, int) and abs(value) > LARGEST_WHOLE:
-        value = float(value) if abs(value) < 1 << 1000 else math.inf
-    if not math.isfinite(value):
-        raise ExpressionError("found a result that is too large, expected a finite number")
-    return value

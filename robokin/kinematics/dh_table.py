@@ -12,7 +12,7 @@ standard and a modified table hold the same numbers: they only part the rows at 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,24 +21,15 @@ from robokin.errors import InputError, Note, shown
 from robokin.expected import expect_choice
 from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.frames import pose
-from robokin.kinematics.common_normal import FAR_FEET, PARALLEL, NormalStep, normal_step, turn, turn_and_shift
+from robokin.kinematics.common_normal import NormalStep
+from robokin.kinematics.round_cells import SAME, round_angle, rounded_cells
+from robokin.kinematics.table_cells import NEGLIGIBLE, TableCells, cells_of, constant_steps
 from robokin.model import CoupledRobot, Joint, JointType, Robot, expect_robot
 from robokin.model.graph import NO_LIMITS
 from robokin.model.robot import Convention, row_constants
-from robokin.spatial import exact, invert
+from robokin.spatial import exact
 
 CONVENTIONS = ("standard", "modified", "frames")
-
-SAME = 1e-12
-"""How far, in the arm's size, the poses of a table may be from those of the robot that it is made of."""
-
-NEGLIGIBLE = 1e-13
-"""The same for one cell: what is shorter, in the arm's size, or a smaller angle [rad], is rounding."""
-
-ROUND_ANGLE = math.pi / 12.0
-
-FEW_DECIMALS = 9
-"""Decimals, in the robot's units, up to which a cell can be a round number that arithmetic has blurred."""
 
 
 def to_convention(robot: Robot, convention: Convention) -> Robot:
@@ -114,7 +105,7 @@ def _to_standard(robot: Robot) -> Robot:
     a, alpha = float(robot.tool[0, 3]), math.atan2(robot.tool[2, 1], robot.tool[1, 1])
     tool = robot.tool
     if not robot.texts and float(np.max(np.abs(_link(a, alpha) - tool))) <= NEGLIGIBLE:
-        after[-1], tool = (a, _round_angle(alpha)), np.eye(4)
+        after[-1], tool = (a, round_angle(alpha)), np.eye(4)
     return _shifted(robot, after, texts, base=exact(robot.base @ _link(first.a, first.alpha)), tool=tool)
 
 
@@ -151,7 +142,7 @@ def _frames(robot: Robot) -> Robot:
     """The robot as frames: where a joint's own frame stands in that of the joint before it."""
     if not robot.n:
         return _still(robot)
-    steps = _steps(robot)
+    steps = constant_steps(robot)
     origins = [exact(step) for step in steps]
     rows = tuple(
         Joint(
@@ -178,44 +169,16 @@ def _still(robot: Robot) -> Robot:
     return replace(robot, rows=(row,), base=exact(robot.base @ T), texts=(), parameters={})
 
 
-def _steps(robot: Robot) -> list[Array]:
-    """The constant steps (n + 1) of (4, 4) before, between and after the motions along z, without base and tool."""
-    steps = [np.eye(4)]
-    for row in robot.rows:
-        before, after = row_constants(replace(row, sense=1), robot.convention)
-        steps[-1] = steps[-1] @ before
-        if row.moves:
-            steps.append(after)
-        else:
-            steps[-1] = steps[-1] @ after
-    return steps
-
-
-@dataclass(frozen=True)
-class TableCells:
-    """The numbers of a table before they are parted into rows.
-
-    base, tool: (4, 4) [m]; link: (a, alpha) before the first motion; steps: (n) of what stands after each motion;
-    tilt [rad]: how far axes that count as parallel are from it.
-    """
-
-    base: Array
-    link: tuple[float, float]
-    steps: tuple[NormalStep, ...]
-    tool: Array
-    tilt: float
-
-
 def _table(robot: Robot, convention: Convention) -> Robot:
     """The robot of frames as a table."""
     if not robot.n:
         return _still(robot)
     size = chain_size(chain_of(robot))
-    cells = _cells(robot, convention, size)
+    cells = cells_of(robot, convention, size)
     exactly = _robot_of(robot, cells, convention)
     q = _configurations(robot, size)
     wanted = pose(chain_of(robot), q)
-    rounded = _robot_of(robot, _rounded(cells, robot, size), convention)
+    rounded = _robot_of(robot, rounded_cells(cells, robot, size), convention)
     allowed = SAME * size + 8.0 * robot.n * cells.tilt * size
     best = rounded if _deviation(rounded, q, wanted) <= allowed / 4.0 else exactly
     off = _deviation(best, q, wanted)
@@ -244,93 +207,6 @@ def _deviation(robot: Robot, q: Array, wanted: Array) -> float:
     chain = chain_of(robot)
     off = np.abs(pose(chain, q) - wanted)
     return float(max(np.max(off[:, :3, 3]), chain_size(chain) * np.max(off[:, :3, :3])))
-
-
-def _cells(robot: Robot, convention: Convention, size: float) -> TableCells:
-    """The numbers of the table of a robot of frames."""
-    small = NEGLIGIBLE * size
-    turns = robot.revolute
-    steps = _with_slides_near(robot, _steps(robot), size)
-    base, link, rest = _first(robot.base, steps[0], convention, small)
-    found, tilt = [], 0.0
-    for i in range(1, robot.n):
-        step = normal_step(rest @ steps[i], small)
-        if step.tilted(FAR_FEET * size) and not turns[i]:
-            # A slide may stand anywhere: it is moved to the frame before it, and its place is the next row's matter.
-            moved = rest @ steps[i]
-            away = moved[:3, :3].T @ moved[:3, 3]
-            steps[i + 1] = _moved(away) @ steps[i + 1]
-            step = normal_step(turn(moved), small)
-        if step.tilted(FAR_FEET * size):
-            raise _refusal(robot, i, step, convention)
-        tilt = max(tilt, step.snapped)
-        found.append(step)
-        rest = step.rest()
-    last = rest @ steps[robot.n]
-    whole = normal_step(last @ robot.tool, small).ended()
-    ends = _nothing(whole.e, whole.phi, small) and whole.snapped <= NEGLIGIBLE
-    if convention == "modified":
-        ends = ends and _nothing(whole.a, whole.alpha, small)
-    if ends:
-        found.append(whole)
-        tool = np.eye(4)
-    else:
-        found.append(NormalStep(math.atan2(rest[1, 0], rest[0, 0]), float(rest[2, 3]), 0.0, 0.0))
-        tool = exact(steps[robot.n] @ robot.tool)
-    return TableCells(base, link, tuple(found), tool, tilt)
-
-
-def _nothing(length: float, angle: float, small: float) -> bool:
-    """Whether a length [m] and an angle [rad] are both no more than rounding."""
-    return abs(length) <= small and abs(angle) <= NEGLIGIBLE
-
-
-def _moved(p: Array) -> Array:
-    """The translation (4, 4) by p: (3,) [m]."""
-    T = np.eye(4)
-    T[:3, 3] = p
-    return T
-
-
-def _with_slides_near(robot: Robot, steps: list[Array], size: float) -> list[Array]:
-    """The steps, slides moved onto the next axis where that is nearly parallel to theirs and the normal far away."""
-    for i in range(robot.n - 1, 0, -1):
-        step = normal_step(steps[i], NEGLIGIBLE * size)
-        if not robot.revolute[i - 1] and step.tilted(FAR_FEET * size):
-            steps[i - 1] = steps[i - 1] @ _moved(steps[i][:3, 3])
-            steps[i] = turn(steps[i])
-    return steps
-
-
-def _first(base: Array, step: Array, convention: Convention, small: float) -> tuple[Array, tuple[float, float], Array]:
-    """The base, a and alpha before the first motion, and what is passed on through it.
-
-    A modified table holds a and alpha where nothing else is needed. Else the base's z lies on the first axis, its
-    origin at the foot of the perpendicular from the old one, its x as near to the old one as it can be.
-    """
-    if convention == "modified":
-        whole = normal_step(step, small)
-        if _nothing(whole.d, whole.theta, small) and not whole.snapped > NEGLIGIBLE and not whole.tilted(math.inf):
-            return base, (whole.a, whole.alpha), whole.rest()
-    z, p = step[:3, 2], step[:3, 3]
-    along = float(z @ p)
-    x = np.array([1.0, 0.0, 0.0]) - z[0] * z
-    if float(np.linalg.norm(x)) < PARALLEL:
-        x = np.array([0.0, 1.0, 0.0]) - z[1] * z
-    x /= np.linalg.norm(x)
-    phi = math.atan2(float(step[:3, 0] @ np.cross(z, x)), float(step[:3, 0] @ x))
-    rest = turn_and_shift(phi, along)
-    return exact(base @ exact(step @ invert(rest))), (0.0, 0.0), rest
-
-
-def _refusal(robot: Robot, i: int, step: NormalStep, convention: Convention) -> InputError:
-    """The error for joint i + 1 (from 1) whose axis is nearly parallel to that of the joint before it."""
-    before, after = robot.joints[i - 1].name, robot.joints[i].name
-    return InputError(
-        f"the axes of joints {shown(before)} and {shown(after)} of {shown(robot.name)} are {step.tilt:.2g} rad from "
-        f"parallel and their common normal is {step.feet:.3g} m away, expected axes that are parallel or clearly not "
-        f"for a {convention} table; convention frames holds them as they are"
-    )
 
 
 def _robot_of(robot: Robot, cells: TableCells, convention: Convention) -> Robot:
@@ -363,42 +239,4 @@ def _offset(own: float, more: float) -> float:
     if more == 0.0:
         return own
     total = math.remainder(own + more, 2.0 * math.pi)
-    return math.pi if total <= -math.pi + NEGLIGIBLE else _round_angle(total)
-
-
-def _round_angle(value: float) -> float:
-    """An angle [rad], a multiple of 15° where it is one but for rounding."""
-    part = round(value / ROUND_ANGLE)
-    return part * math.pi / 12.0 if abs(value - part * ROUND_ANGLE) <= SAME else value
-
-
-def _rounded(cells: TableCells, robot: Robot, size: float) -> TableCells:
-    """The same numbers, those that are round ones but for rounding made so."""
-
-    def length(value: float) -> float:
-        return _few_digits(value, robot.units.metres, NEGLIGIBLE * size)
-
-    def angle(value: float) -> float:
-        value = _round_angle(value)
-        return _few_digits(value, robot.units.radians, NEGLIGIBLE) if robot.units.degrees else value
-
-    def rounded(step: NormalStep) -> NormalStep:
-        return replace(step, theta=angle(step.theta), d=length(step.d), a=length(step.a), alpha=angle(step.alpha))
-
-    def placed(T: Array) -> Array:
-        T = T.copy()
-        T[:3, 3] = [length(value) for value in T[:3, 3]]
-        return T
-
-    link = (length(cells.link[0]), angle(cells.link[1]))
-    steps = tuple(rounded(step) for step in cells.steps)
-    return replace(cells, base=placed(cells.base), link=link, steps=steps, tool=placed(cells.tool))
-
-
-def _few_digits(value: float, unit: float, close: float) -> float:
-    """A value as the number of its unit with the fewest decimals that is as close as that, if there is one."""
-    for decimals in range(FEW_DECIMALS + 1):
-        near = round(value / unit, decimals) * unit
-        if abs(near - value) <= close:
-            return near + 0.0
-    return value
+    return math.pi if total <= -math.pi + NEGLIGIBLE else round_angle(total)

@@ -18,14 +18,10 @@ from robokin.kernel.facts import fact
 from robokin.kernel.frames import joint_motion
 from robokin.kinematics.forward import joint_frames
 from robokin.model import CoupledRobot, Robot, Tree
+from robokin.pictures.arm_bars import HEIGHT, LINK, NOTHING, PARALLEL, Bar, base_bars, joint_bars, link_bars, slide_bars
+from robokin.pictures.palms import Palm, palms_of
 from robokin.pictures.skeleton import ArmSkeleton, FrameMark, skeleton_of
 from robokin.spatial import exact
-
-NOTHING = 1e-9
-"""A step shorter than this part of the arm is no step: tables are written to five digits."""
-
-HEIGHT, RADIUS, LINK = 0.075, 0.032, 0.015
-"""Height and radius of a joint's cylinder and the radius of a link, as parts of the arm's length."""
 
 SHARE = 0.5
 """A joint is no longer than this part of what the arm has for each: symbols of many joints would cover the links."""
@@ -33,49 +29,12 @@ SHARE = 0.5
 APART = 1.1
 """Heights of a joint between the middles of two, that both are seen."""
 
-ROUND, SQUARE = 24, 4
-"""Sides of a round piece and of a square one."""
-
-PARALLEL = 1e-6
-"""Sine of the angle below which two axes are parallel."""
-
 LEAST = 0.25
 """Joints of a short branch are no smaller than this part of the height that they have at most."""
 
 SHORT, WIDE = 0.55, 0.7
 """Length of a frame's axes on what has several branches, as a part of that on an arm of its length: at most, and of a
 joint's height as a part of what that is at most."""
-
-STRAIGHT = 1.1
-"""Links no longer than so many times the way from a body's origin to a joint are spokes of a plate."""
-
-FLAT = 0.2
-"""Where joints leave a body, those no farther from a plane than this part of their spread have a plate between them."""
-
-
-@dataclass(frozen=True, eq=False)
-class Bar:
-    """A straight piece from a (3,) to b (3,) [m], each in the frame of its body.
-
-    role: link, slide, revolute, prismatic, stroke or base; across (3,) a direction in the first body that a square
-    piece is turned to; width: the radius, or half the side [m]; sides: ROUND or SQUARE.
-    """
-
-    role: str
-    bodies: tuple[int, int]
-    a: Array
-    b: Array
-    across: Array
-    width: float
-    sides: int = ROUND
-
-
-@dataclass(frozen=True, eq=False)
-class Palm:
-    """The plate of a body that several joints leave: its corners (k, 3) [m], round its middle."""
-
-    body: int
-    corners: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,15 +111,15 @@ def arm_of(robot: Robot | Tree) -> ArmShape:
     centres = _centres(robot, skeleton, lines, heights)
     bars: list[Bar] = []
     for body, line in zip(skeleton.on, lines, strict=True):
-        bars += _link(body, line, LINK * heights[body] / HEIGHT)
+        bars += link_bars(body, line, LINK * heights[body] / HEIGHT)
     for i, (centre, stroke) in enumerate(zip(centres, strokes, strict=True)):
         scale = heights[i + 1] / HEIGHT
-        bars += _joint(skeleton, i, centre, scale)
+        bars += joint_bars(skeleton, i, centre, scale)
         if skeleton.bodies[i].slides:
-            bars += _slide(skeleton, i, stroke, scale)
+            bars += slide_bars(skeleton, i, stroke, scale)
     if len(skeleton.children[0]) < 2:
-        bars += _base(skeleton, centres, heights[0] / HEIGHT)
-    return ArmShape(robot, skeleton, length, tuple(bars), lines, tuple(_palms(skeleton, length)), tuple(heights))
+        bars += base_bars(skeleton, centres, heights[0] / HEIGHT)
+    return ArmShape(robot, skeleton, length, tuple(bars), lines, tuple(palms_of(skeleton, length)), tuple(heights))
 
 
 def plane_of(robot: Robot | Tree) -> Array | None:
@@ -192,9 +151,6 @@ def lines_of(arm: ArmShape, frames: Array) -> list[Array]:
 def line_of(arm: ArmShape, frames: Array) -> Array:
     """(k, 3) [m] the corners of a whole serial arm in the world, from its base to its tool; frames: `body_frames`."""
     return np.concatenate(lines_of(arm, frames))
-
-
-# How it is made -------------------------------------------------------------------------------------------
 
 
 def _length(skeleton: ArmSkeleton, strokes: list[tuple[float, float] | None]) -> float:
@@ -288,113 +244,3 @@ def _run(line: Array, axis: Array) -> float:
     step = line[1] - line[0]
     run = float(step @ axis)
     return run if np.linalg.norm(step - run * axis) < PARALLEL * abs(run) else 0.0
-
-
-def _link(body: int, line: Array, width: float) -> list[Bar]:
-    bars = []
-    for k in range(len(line) - 1):
-        step = (line[k + 1] - line[k]) / np.linalg.norm(line[k + 1] - line[k])
-        # Two pieces overlap at their corner, so that it is closed.
-        a = line[k] - (width * step if k else 0.0)
-        b = line[k + 1] + (width * step if k < len(line) - 2 else 0.0)
-        bars.append(Bar("link", (body, body), a, b, perpendicular(step), width))
-    return bars
-
-
-def _joint(skeleton: ArmSkeleton, i: int, centre: float, scale: float) -> list[Bar]:
-    """The cylinder of a joint that turns, the box of one that slides."""
-    body, parent = skeleton.bodies[i], skeleton.bodies[i].parent
-    p, x, z = body.start[:3, 3], body.start[:3, 0], body.start[:3, 2]
-    half = 0.5 * HEIGHT * scale * z
-    middle = p + centre * z
-    role, width = ("revolute", RADIUS) if body.turns else ("prismatic", 0.9 * RADIUS)
-    sides = ROUND if body.turns else SQUARE
-    symbol = Bar(role, (parent, parent), middle - half, middle + half, x, width * scale, sides)
-    if i == 0 and centre and len(skeleton.children[0]) == 1:
-        return [Bar("link", (parent, parent), p, middle, x, LINK * scale), symbol]
-    return [symbol]
-
-
-def _slide(skeleton: ArmSkeleton, i: int, stroke: tuple[float, float] | None, scale: float) -> list[Bar]:
-    """What slides out of the box, and the stroke as a thin line with its ends."""
-    start, parent = skeleton.bodies[i].start, skeleton.bodies[i].parent
-    p, x, z = start[:3, 3], start[:3, 0], start[:3, 2]
-    bars = [Bar("slide", (parent, i + 1), p, np.zeros(3), x, 0.8 * LINK * scale, SQUARE)]
-    if stroke and stroke[1] > stroke[0]:
-        # Beside the box, so that neither box nor slide hides it.
-        ends = [p + 1.25 * RADIUS * scale * x + end * z for end in stroke]
-        bars.append(Bar("stroke", (parent, parent), ends[0], ends[1], x, 0.2 * LINK * scale, SQUARE))
-        thin = 0.2 * LINK * scale * z
-        stops = [(end - thin, end + thin) for end in ends]
-        bars += [Bar("stroke", (parent, parent), a, b, x, 0.7 * LINK * scale, SQUARE) for a, b in stops]
-    return bars
-
-
-def _base(skeleton: ArmSkeleton, centres: list[float], scale: float) -> list[Bar]:
-    """The foot: a flat disc below the first joint where its axis is the base's, else at the base's origin."""
-    base = skeleton.marks[0].T
-    p, x, z = base[:3, 3], base[:3, 0], base[:3, 2]
-    low, side = 0.0, 1.0
-    if skeleton.bodies:
-        first = skeleton.bodies[0].start
-        offset = first[:3, 3] - p
-        upright = np.linalg.norm(np.cross(first[:3, 2], z)) < PARALLEL
-        if upright and np.linalg.norm(offset - (offset @ z) * z) < NOTHING + PARALLEL * scale:
-            run, own = float(offset @ z), float(centres[0] * (first[:3, 2] @ z))
-            # An arm whose base has z pointing down goes the other way.
-            side = -1.0 if run < -NOTHING or (run < NOTHING and -HEIGHT * scale < own < 0.0) else 1.0
-            low = min(0.0, side * (run + own) - 0.5 * HEIGHT * scale)
-        else:
-            low = -RADIUS * scale
-    a, b = (p + side * (low - thick * scale) * z for thick in (0.014, 0.0))
-    return [Bar("base", (0, 0), a, b, x, 2.1 * RADIUS * scale)]
-
-
-def _palms(skeleton: ArmSkeleton, length: float) -> list[Palm]:
-    """The plates: between a body's origin and the joints that leave it straight, where a plane holds three of them."""
-    palms = []
-    for body, following in enumerate(skeleton.children):
-        first = skeleton.marks[0].T[:3, 3] if body == 0 else np.zeros(3)
-        corners = [first]
-        for joint in (skeleton.bodies[number - 1] for number in following):
-            place = joint.start[:3, 3]
-            apart = min(float(np.linalg.norm(place - other)) for other in corners)
-            if apart > NOTHING * length and joint.reach <= STRAIGHT * float(np.linalg.norm(place - first)):
-                corners.append(place)
-        if len(following) > 1 and (ring := _ring(np.array(corners))) is not None:
-            palms.append(Palm(body, ring))
-    return palms
-
-
-def _ring(corners: Array) -> Array | None:
-    """Corners (k, 3) round their middle, without one, but the first, that stands out, as a thumb does.
-
-    None where they are in no plane, or in a row.
-    """
-    if len(corners) > 4 and _spread(corners)[2] > FLAT * _spread(corners)[1]:
-        rest = [np.delete(corners, i, axis=0) for i in range(1, len(corners))]
-        corners = min(rest, key=lambda part: float(_spread(part)[2]))
-    spread = _spread(corners)
-    if len(corners) < 3 or spread[1] <= FLAT * spread[0] or spread[2] > FLAT * spread[1]:
-        return None
-    middle = corners.mean(axis=0)
-    axes = np.linalg.svd(corners - middle, full_matrices=False)[2]
-    u, v = ((corners - middle) @ axis for axis in axes[:2])
-    return np.asarray(corners[np.argsort(np.arctan2(v, u), kind="stable")])
-
-
-def _spread(corners: Array) -> Array:
-    """(3,) how far points (k, 3) [m] spread about their middle, along the directions in which they do so most."""
-    return np.sqrt(np.linalg.svd(np.asarray(np.cov(corners.T, bias=True), dtype=np.float64), compute_uv=False))
-
-
-def ends_of(bar: Bar, frames: Array) -> tuple[Array, Array]:
-    """Where a piece begins and ends, (3,), (3,) [m] in the world; frames: `body_frames`."""
-    first, last = frames[bar.bodies[0]], frames[bar.bodies[1]]
-    return first[:3, :3] @ bar.a + first[:3, 3], last[:3, :3] @ bar.b + last[:3, 3]
-
-
-def perpendicular(direction: Array) -> Array:
-    """A direction (3,) at right angles to another (3,)."""
-    aside = np.cross(direction, np.eye(3)[int(np.argmin(np.abs(direction)))])
-    return np.asarray(aside / np.linalg.norm(aside))

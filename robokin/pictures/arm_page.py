@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.pictures.arm import LINK, Bar, default_configuration
+from robokin.pictures.arm import default_configuration
+from robokin.pictures.arm_bars import LINK, Bar
 from robokin.pictures.arm_faces import COLOURS, CROSS, GHOSTS
 from robokin.pictures.arm_scene import Posture, Scene
 from robokin.pictures.skeleton import branches_of, leads_of

@@ -9,7 +9,8 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.model import Robot, Tree
-from robokin.pictures.arm import ArmShape, arm_of, body_frames, default_configuration, ends_of, lines_of, plane_of
+from robokin.pictures.arm import ArmShape, arm_of, body_frames, default_configuration, lines_of, plane_of
+from robokin.pictures.arm_bars import ends_of
 from robokin.pictures.skeleton import FrameMark
 from robokin.units import Units
 

@@ -15,7 +15,7 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.mobility.gear_wheels import GearWheel, belt_lines, wheels_of
 from robokin.model import Mechanism, MechanismJoint
-from robokin.pictures.arm import ROUND, SQUARE, perpendicular
+from robokin.pictures.arm_bars import ROUND, SQUARE, perpendicular
 
 LINKS = ("#c8551b", "#1b4b72", "#3f7f4f", "#8a5a9e", "#b08a1e", "#4f8f9e", "#9e4f5f", "#5f5f9e")
 """Colours of links, told apart by the colour-blind too when few."""

@@ -8,7 +8,8 @@ import time
 import pytest
 
 from robokin.errors import ExpressionError
-from robokin.formats.number_expressions import FUNCTIONS, MAX_LENGTH, Scope, Value, evaluate
+from robokin.formats.expression_tokens import MAX_LENGTH
+from robokin.formats.number_expressions import FUNCTIONS, Scope, Value, evaluate
 from robokin.formats.parameters import Parameters
 
 RADIANS = Scope()

@@ -10,7 +10,8 @@ import robokin
 from robokin.formats.library import library_names, load_any
 from robokin.kinematics.forward import joint_frames, row_frames
 from robokin.model import Robot
-from robokin.pictures.arm import arm_of, body_frames, default_configuration, ends_of, line_of, plane_of
+from robokin.pictures.arm import arm_of, body_frames, default_configuration, line_of, plane_of
+from robokin.pictures.arm_bars import ends_of
 from robokin.pictures.arm_faces import arm_faces, ordered
 from robokin.pictures.arm_scene import axis_names, eye_axes, usual_view
 

@@ -13,7 +13,8 @@ import robokin
 from robokin.errors import InputError
 from robokin.model import Tree
 from robokin.model.graph import Coupling, Graph, GraphJoint, Tip
-from robokin.pictures.arm import arm_of, body_frames, ends_of, lines_of, plane_of
+from robokin.pictures.arm import arm_of, body_frames, lines_of, plane_of
+from robokin.pictures.arm_bars import ends_of
 from robokin.pictures.arm_scene import LYING, SLANTING, STANDING, usual_view
 from robokin.pictures.skeleton import branches_of, leads_of, skeleton_of
 from robokin.spatial import rotation_transform, translation_transform
