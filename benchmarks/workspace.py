@@ -17,10 +17,11 @@ import numpy as np
 import robokin
 from benchmarks.machine import best_of, line
 from robokin.jobs.ordered_map import ordered_map, usable_cores
+from robokin.jobs.sequences import RANDOM_BLOCK
 from robokin.model import JointType, Robot
 from robokin.workspace.attitudes import attitudes, group_of
 from robokin.workspace.extremes import extent
-from robokin.workspace.sampling import TASK, joint_values, positions, sample_blocks
+from robokin.workspace.sampling import joint_values, positions
 from robokin.workspace.space import Space, space_of
 from robokin.workspace.trials import fractions
 
@@ -53,7 +54,7 @@ print(max(peaks))
 
 def farthest(space: Space, start: int) -> float:
     """A number that needs every position of a task, so that none is sent from process to process."""
-    p = positions(space, joint_values(space, "sobol", 0, start, TASK, SAMPLES))
+    p = positions(space, joint_values(space, "sobol", 0, start, RANDOM_BLOCK, SAMPLES))
     return float(np.max(p))
 
 
@@ -75,7 +76,8 @@ def _positions(cores: int) -> None:
         for used in sorted({1, cores}):
             work = partial(farthest, space)
             taken = best_of(
-                lambda work=work, used=used, count=count: list(ordered_map(work, range(0, count, TASK), used)), 3
+                lambda work=work, used=used, count=count: list(ordered_map(work, range(0, count, RANDOM_BLOCK), used)),
+                3,
             )
             wanted = f"limit {POSITIONS / 1e6:.0f} on two cores" if name == "puma560" and used > 1 else ""
             line(f"{name}, million positions a second, {used} cores", f"{count / taken / 1e6:.1f}", wanted)
@@ -85,11 +87,11 @@ def _orientations(cores: int) -> None:
     for name in ("puma560", "planar3r", "ur5e"):
         space = space_of(robokin.load(name))
         tried = attitudes(space, group_of(space), 128, 0)
-        block = next(sample_blocks(space, "random", 1, 4096))
+        p = positions(space, joint_values(space, "random", 1, 0, 4096, 4096)).T
         start = time.perf_counter()
-        found = fractions(space, tried, block.p.T, cores)
+        found = fractions(space, tried, p, cores)
         taken = time.perf_counter() - start
-        asked = len(block.p.T) * len(tried.rotations)
+        asked = len(p) * len(tried.rotations)
         wanted = f"limit {QUERIES:,}; " if name == "puma560" else ""
         line(
             f"{name}, orientation queries a second",

@@ -253,17 +253,6 @@ def parameters_in_position(node: Node, context: Context) -> tuple[tuple[str, str
     return ()
 
 
-def names_of(node: Node, what: str) -> tuple[str, ...]:
-    """A list of different names."""
-    names: dict[str, None] = {}
-    for item in list_of(node, what):
-        name = text_of(item, "a name")
-        if name in names:
-            raise item.mark.error(f"found '{shown(name)}' twice in {what}, expected each name once")
-        names[name] = None
-    return tuple(names)
-
-
 def flag_of(node: Node, what: str) -> bool:
     """true or false."""
     return choice_of(node, ("true", "false"), what) == "true"

@@ -117,11 +117,6 @@ def _of_many(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Arra
     return _pose_error(T, end, size), np.ascontiguousarray(J.transpose(2, 0, 1))
 
 
-def pose_error(T: Array, found: Array, size: float) -> Array:
-    """(s, 6): origin's distance [size] and rotation vector [rad] from found to T, (s, 4, 4), in the base's axes."""
-    return _pose_error(T, found[:, :3].transpose(2, 1, 0), size)
-
-
 def _pose_error(T: Array, X: Array, size: float) -> Array:
     """The error (s, 6) for the columns x, y, z, p (4, 3, s) of what was found."""
     wish = T[:, :3].transpose(2, 1, 0)

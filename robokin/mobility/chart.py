@@ -13,6 +13,9 @@ smooth functions that vanish where the loop is closed. With dG = [ξ] G - G [ξ'
 a and through the joint, ξ' that on the way to b, they change by
 
     v + w × t - R v'    and    ½ (tr R - R) (w - R w').
+
+Not a `kernel.chain.Chain`, which is a line of joints that turn about z or slide along it, with constants between them:
+here bodies branch and meet again, a screw has a pitch, and joints stand where they are at the reference, without frames.
 """
 
 from __future__ import annotations
@@ -22,9 +25,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.mobility.screws import moved_screws, skew
 from robokin.model.topology import topology_of
 from robokin.spatial import invert
+from robokin.spatial.twists import moved_screws, skew
 
 OUT_OF_PLANE = 1e-12
 """Parts of unit twists below this are rounding."""

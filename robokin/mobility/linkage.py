@@ -35,9 +35,10 @@ import numpy as np
 from robokin.arrays import Array, Flags
 from robokin.brief import Brief
 from robokin.kernel.ranks import LOOP_RANK
-from robokin.mobility.screws import Element, exponential, logarithm, moved_screws
+from robokin.mobility.screws import Element
 from robokin.model.topology import topology_of
 from robokin.spatial import invert
+from robokin.spatial.twists import exponential, logarithm, moved_screws
 
 CLOSED = 1e-12
 """A loop that lacks less [size and rad] is closed: some ten thousand times the rounding of its product."""

@@ -20,9 +20,10 @@ from robokin.arrays import Array, Index
 from robokin.brief import Brief
 from robokin.mobility.chart import Chart, ChartEdge
 from robokin.mobility.linkage import Linkage, LinkageState
-from robokin.mobility.screws import Element, moved_screws
+from robokin.mobility.screws import Element
 from robokin.model.topology import components
 from robokin.spatial import transform
+from robokin.spatial.twists import moved_screws
 
 SPIN = 1e-9
 """Sine of the angle between the motions of two joints below which they are one motion."""

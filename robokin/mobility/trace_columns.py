@@ -7,7 +7,7 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.mobility.assembly import Assembly
 from robokin.mobility.linkage import LinkageState
-from robokin.mobility.screws import logarithm
+from robokin.spatial.twists import logarithm
 
 
 def labels_of(assembly: Assembly, names: list[str]) -> tuple[str, ...]:

@@ -6,17 +6,13 @@ column of numbers, a twist by a right angle none; that is a quarter of what the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from functools import partial
-from itertools import pairwise
+from dataclasses import replace
 
 import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import InputError
-from robokin.jobs.ordered_map import ordered_map
-from robokin.jobs.sequences import RANDOM_BLOCK, Kind, grid_sides, unit_points
+from robokin.jobs.sequences import Kind, grid_sides, unit_points
 from robokin.kernel.chain import Chain, with_joints_at
 from robokin.kernel.columns import cos_sin_of_halves
 from robokin.kernel.entries import Entry, increased, plus, turned, turned_back
@@ -27,9 +23,6 @@ from robokin.workspace.space import Space
 BLOCK = 4096
 """Configurations followed at once: their columns (32 kB each) stay in the second-level cache."""
 
-TASK = RANDOM_BLOCK
-"""Configurations of a task for one core: some ten milliseconds of work, and no random number drawn twice."""
-
 
 ATTEMPTS = 64
 """Times that configurations outside of what cuts a box are drawn anew; then they are put where one variable after
@@ -37,15 +30,6 @@ another has a place, which is within, and no more as likely everywhere."""
 
 ANEW = 1 << 20
 """Sequences of a seed between two attempts."""
-
-
-@dataclass(frozen=True, eq=False)
-class Sample:
-    """Configurations start … start + m - 1 of a sequence: q (n, m) [rad | m]; the tool's origin p (3, m) [m]."""
-
-    start: int
-    q: Array
-    p: Array
 
 
 def sample_count(space: Space, kind: Kind, samples: int, every: bool = False) -> int:
@@ -113,31 +97,6 @@ def _filled(space: Space, every: bool) -> list[int]:
     if not every:
         rest = [i for i in rest if space.gears is not None and space.gears.cuts.linked[i]]
     return [*space.moving, *rest]
-
-
-def sample_blocks(
-    space: Space,
-    kind: Kind = "sobol",
-    seed: int = 0,
-    samples: int = 1 << 17,
-    cores: int | None = 1,
-    every: bool = False,
-    start: int = 0,
-) -> Iterator[Sample]:
-    """Configurations `start` … of a sequence and their positions, in blocks, on several cores but in order.
-
-    A block's ends are multiples of TASK, so that it does not depend on where the sequence was entered. Raises
-    InputError for less than one sample and an unknown kind.
-    """
-    total = sample_count(space, kind, samples, every)
-    edges = [start, *range((start // TASK + 1) * TASK, total, TASK), total]
-    tasks = ((first, last - first) for first, last in pairwise(edges) if last > first)
-    return ordered_map(partial(_sample, space, kind, seed, samples, every), tasks, cores)
-
-
-def _sample(space: Space, kind: Kind, seed: int, samples: int, every: bool, task: tuple[int, int]) -> Sample:
-    q = joint_values(space, kind, seed, *task, samples, every)
-    return Sample(task[0], q, positions(space, q))
 
 
 def positions(space: Space, q: Array) -> Array:

@@ -9,11 +9,11 @@ from mobility.linkages import bennett, chain_of_four_bars, four_bar, generic_loo
 from robokin.errors import InputError
 from robokin.mobility.assembly import assembled, missing_geometry, size_of, space_fault
 from robokin.mobility.linkage import CLOSED
-from robokin.mobility.screws import logarithm
 from robokin.mobility.slips import slips_of
 from robokin.mobility.true_mobility import kernel_at
 from robokin.mobility.verdict import mobility_of
 from robokin.spatial import invert
+from robokin.spatial.twists import logarithm
 
 SQUARE = [(0.0, 0.0), (1.0, 2.0), (4.0, 3.0), (5.0, 0.5)]
 EXAMPLES = {"four-bar": four_bar(SQUARE), "slider-crank": slider_crank(), "Bennett": bennett(), "7R": generic_loop(7)}

@@ -8,8 +8,9 @@ from mobility.linkages import linkage
 
 import robokin
 from robokin.mobility.output import kind_of, twist_basis
-from robokin.mobility.screws import exponential, moved_screws, slide, turn
+from robokin.mobility.screws import slide, turn
 from robokin.mobility.verdict import mobility_of
+from robokin.spatial.twists import exponential, moved_screws
 
 X, Y, Z = np.eye(3)
 O = np.array([0.3, -0.5, 0.8])  # noqa: E741 - a point that lies on no axis

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robokin.mobility.screws import elements_of, exponential, has_geometry, logarithm, moved_screws, slide, turn
+from robokin.mobility.screws import elements_of, has_geometry, slide, turn
 from robokin.model import MechanismJoint
 from robokin.spatial import invert
+from robokin.spatial.twists import exponential, logarithm, moved_screws
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-6, 9e-5, 1.1e-4, 1e-3, 0.5, 2.0, 3.1, 3.14159])

@@ -13,8 +13,7 @@ from robokin.errors import InputError
 from robokin.formats import library_names, load_any
 from robokin.jobs.sequences import KINDS
 from robokin.model import Joint, JointType, Robot
-from robokin.workspace import sampling
-from robokin.workspace.sampling import joint_values, moving_chain, positions, sample_blocks, sample_count
+from robokin.workspace.sampling import joint_values, moving_chain, positions, sample_count
 from robokin.workspace.space import space_of
 
 ARMS = ["puma560", "planar3r", "scara", "stanford", "thumb", "panda", "cylindrical", "spherical-wrist", "kr5-arc"]
@@ -77,20 +76,13 @@ def test_positions_do_not_depend_on_the_other_joints(name, kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_blocks_are_the_same_on_any_number_of_cores_and_from_any_start(kind, monkeypatch):
-    monkeypatch.setattr(sampling, "TASK", 1000)
+def test_a_part_of_a_sequence_is_that_part_from_any_start(kind):
     space = space_of(robokin.load("stanford"))
-    whole = {cores: list(sample_blocks(space, kind, 5, 4500, cores)) for cores in (1, 2)}
-    for one, two in zip(whole[1], whole[2], strict=True):
-        assert one.start == two.start
-        assert np.array_equal(one.q, two.q)
-        assert np.array_equal(one.p, two.p)
-    p = np.concatenate([block.p for block in whole[1]], axis=1)
-    assert p.shape[1] == sample_count(space, kind, 4500)
-    start = p.shape[1] // 2 + 7
-    rest = list(sample_blocks(space, kind, 5, 4500, 1, start=start))
-    assert rest[0].start == start
-    assert np.array_equal(np.concatenate([block.p for block in rest], axis=1), p[:, start:])
+    total = sample_count(space, kind, 4500)
+    whole = joint_values(space, kind, 5, 0, total, 4500)
+    assert whole.shape == (6, total)
+    for start, count in ((0, 1000), (1000, 1), (total // 2 + 7, 300)):
+        assert np.array_equal(joint_values(space, kind, 5, start, count, 4500), whole[:, start : start + count])
 
 
 def test_a_base_moves_every_position(rng):
@@ -118,4 +110,4 @@ def test_an_arm_whose_tool_stays_has_one_position():
 def test_less_than_one_sample_is_refused(samples):
     space = space_of(robokin.load("planar2r"))
     with pytest.raises(InputError, match=f"found {samples} samples, expected at least 1"):
-        sample_blocks(space, samples=samples)
+        sample_count(space, "sobol", samples)
