@@ -73,7 +73,7 @@ def replaced(found: Found, claims: Claims, again: Index, more: Found, said: Clai
     """The solutions and claims with those of the targets `again` (k,) replaced."""
     kept = np.ones(len(claims.basis), dtype=bool)
     kept[again] = False
-    both = merged(found.pick(kept[found.index]), Found(again[more.index], more.q, more.position, more.angle))
+    both = merged(found.pick(kept[found.index]), more.numbered(again))
     claims.basis[again], claims.real[again] = said.basis, said.real
     for whole, part in ((claims.candidates, said.candidates), (claims.duplicates, said.duplicates)):
         if whole is not None and part is not None:

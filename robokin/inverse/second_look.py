@@ -39,7 +39,7 @@ from robokin.inverse.verify import CLOSES, Found, distinct, merged
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import limited
 from robokin.kernel.facts import fact
-from robokin.kernel.residual import error_and_jacobian
+from robokin.kernel.residual import distance_and_angle, error_and_jacobian
 
 FINE = 6
 """Steps by singular values thereafter: next to singular poses normal equations lose half of the digits."""
@@ -301,6 +301,6 @@ def closing_at_last(chain: Chain, T: Array, index: Index, q: Array, size: float)
         error[open_[~better]] = here[~better]
         if not better.any():
             break
-    position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
+    position, angle = distance_and_angle(error)
     closes = (position <= CLOSES) & (angle <= CLOSES)
     return Found(index, q, position * size, angle).pick(closes)

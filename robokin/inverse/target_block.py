@@ -26,7 +26,7 @@ from robokin.inverse.solution_names import branch_names, listed_names
 from robokin.inverse.solutions import Arc
 from robokin.inverse.solve_blocks import solve_block, turned_in_the_open
 from robokin.inverse.verify import CLOSES, Found, distinct, merged, nothing, with_ones_within, within_limits, wrapped
-from robokin.kernel.residual import error_and_jacobian
+from robokin.kernel.residual import distance_and_angle, error_and_jacobian
 from robokin.model import Robot
 from robokin.model.robot import tolerated
 from robokin.spatial.transforms import FARTHEST
@@ -253,14 +253,14 @@ def _beside(request: Request, T: Array, near: Array) -> Found:
     off, _ = error_and_jacobian(chain, T, start, analysis.size)
     index = np.flatnonzero(np.max(np.abs(off), axis=1) <= TYPED)
     q, off = descend(chain, T[index], start[index], analysis.size, limits=request.own_limits, steps=10)
-    position, angle = np.linalg.norm(off[:, :3], axis=1), np.linalg.norm(off[:, 3:], axis=1)
+    position, angle = distance_and_angle(off)
     closes = (position <= CLOSES) & (angle <= CLOSES)
     return Found(index, q, position * analysis.size, angle).pick(closes)
 
 
 def _with_more(found: Found, more: Found, missing: Index) -> Found:
     """All configurations, sorted by target; more's targets are numbered as in `missing`."""
-    both = merged(found, Found(missing[more.index], more.q, more.position, more.angle))
+    both = merged(found, more.numbered(missing))
     return both.pick(np.argsort(both.index, kind="stable"))
 
 

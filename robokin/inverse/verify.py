@@ -70,19 +70,23 @@ class Found:
         q = self.q.T.take(which, axis=1).T
         return Found(self.index.take(which), q, self.position.take(which), self.angle.take(which))
 
+    def numbered(self, targets: Index) -> Found:
+        """The same of some targets whose numbers among all (k,) are these."""
+        return Found(targets[self.index], self.q, self.position, self.angle)
+
 
 def nothing(n: int) -> Found:
     """No configuration."""
     return Found(np.empty(0, dtype=np.intp), np.empty((0, n)), np.empty(0), np.empty(0))
 
 
-def merged(a: Found, b: Found) -> Found:
-    """Both, one after the other."""
+def merged(*parts: Found) -> Found:
+    """All of them, one after the other."""
     return Found(
-        np.concatenate([a.index, b.index]),
-        np.concatenate([a.q, b.q]),
-        np.concatenate([a.position, b.position]),
-        np.concatenate([a.angle, b.angle]),
+        np.concatenate([part.index for part in parts]),
+        np.concatenate([part.q for part in parts]),
+        np.concatenate([part.position for part in parts]),
+        np.concatenate([part.angle for part in parts]),
     )
 
 

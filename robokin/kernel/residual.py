@@ -117,6 +117,11 @@ def _of_many(chain: Chain, T: Array, q: Array, size: float) -> tuple[Array, Arra
     return _pose_error(T, end, size), np.ascontiguousarray(J.transpose(2, 0, 1))
 
 
+def distance_and_angle(error: Array) -> tuple[Array, Array]:
+    """The distances (s,), in the errors' lengths, and angles (s,) [rad] of errors (s, 6)."""
+    return np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
+
+
 def _pose_error(T: Array, X: Array, size: float) -> Array:
     """The error (s, 6) for the columns x, y, z, p (4, 3, s) of what was found."""
     wish = T[:, :3].transpose(2, 1, 0)

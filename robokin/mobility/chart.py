@@ -15,7 +15,7 @@ a and through the joint, ξ' that on the way to b, they change by
     v + w × t - R v'    and    ½ (tr R - R) (w - R w').
 
 Not a `kernel.chain.Chain`, which is a line of joints that turn about z or slide along it, with constants between them:
-here bodies branch and meet again, a screw has a pitch, and joints stand where they are at the reference, without frames.
+here bodies branch and meet again, a screw has a pitch, and joints stand where they are at the reference.
 """
 
 from __future__ import annotations

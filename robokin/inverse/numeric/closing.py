@@ -22,10 +22,10 @@ from robokin.inverse.analysis import Analysis
 from robokin.inverse.numeric.closest import MoreStarts, initial_guesses, nearest_configurations
 from robokin.inverse.numeric.position_first import Ways
 from robokin.inverse.numeric.second_order import go_down
-from robokin.inverse.verify import CLOSES, Found, nothing
+from robokin.inverse.verify import CLOSES, Found, merged, nothing
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import brought_down, held_at, limited, singular_step
-from robokin.kernel.residual import error_and_jacobian
+from robokin.kernel.residual import distance_and_angle, error_and_jacobian
 
 TOGETHER = 32
 """Targets searched for at once: enough that the interpreter's share is spread thin; more gain little."""
@@ -86,9 +86,9 @@ def closing_nearest(
         none = np.flatnonzero(np.bincount(found.index, minlength=len(some)) == 0)
         if thorough and len(none):
             again = _thorough(analysis, T[some[none]], limits, home, seed, _of(more, none))
-            found = _joined([found, Found(none[again.index], again.q, again.position, again.angle)], len(home))
-        parts.append(Found(some[found.index], found.q, found.position, found.angle))
-    both = _joined(parts, len(home))
+            found = merged(found, again.numbered(none))
+        parts.append(found.numbered(some))
+    both = merged(nothing(len(home)), *parts)
     return both.pick(np.argsort(both.index, kind="stable"))
 
 
@@ -106,8 +106,8 @@ def _thorough(analysis: Analysis, T: Array, limits: Array, home: Array, seed: in
         if not len(rows):
             break
         found = _search(analysis, T[rows], limits, home, seed + another, _of(more, rows))
-        parts.append(Found(rows[found.index], found.q, found.position, found.angle))
-    return _joined(parts, len(home))
+        parts.append(found.numbered(rows))
+    return merged(nothing(len(home)), *parts)
 
 
 def _search(analysis: Analysis, T: Array, limits: Array, home: Array, seed: int, more: MoreStarts | None) -> Found:
@@ -130,7 +130,7 @@ def _search(analysis: Analysis, T: Array, limits: Array, home: Array, seed: int,
         found = exact_within(analysis, T, index[rows], went.T * scale, bounds, CLOSE)
         parts.append(found)
         missing &= np.bincount(found.index, minlength=m) == 0
-    return _joined(parts, len(home))
+    return merged(nothing(len(home)), *parts)
 
 
 def _down(ways: Ways, T: Array, x: Array, steps: int) -> tuple[Array, Array]:
@@ -153,7 +153,7 @@ def exact_within(analysis: Analysis, T: Array, index: Index, q: Array, limits: A
     close = np.max(np.abs(error), axis=1) <= near
     index = index[close]
     q, error = newton_within(chain, T[index], q[close], size, limits, EXACT_STEPS)
-    position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
+    position, angle = distance_and_angle(error)
     return Found(index, q[:, :own], position * size, angle).pick((position <= CLOSES) & (angle <= CLOSES))
 
 
@@ -199,14 +199,3 @@ def _of(more: MoreStarts | None, some: Index) -> MoreStarts | None:
     number[some] = np.arange(len(some))
     which = number[more[0]] >= 0
     return number[more[0][which]], more[1][which]
-
-
-def _joined(parts: list[Found], n: int) -> Found:
-    """All of them."""
-    parts = [nothing(n), *parts]
-    return Found(
-        np.concatenate([part.index for part in parts]),
-        np.concatenate([part.q for part in parts]),
-        np.concatenate([part.position for part in parts]),
-        np.concatenate([part.angle for part in parts]),
-    )

@@ -8,11 +8,11 @@ from robokin.arrays import Array, Flags
 from robokin.inverse.analysis import Analysis
 from robokin.inverse.numeric.initial_guesses import between
 from robokin.inverse.numeric.least_squares import descend
-from robokin.inverse.verify import CLOSES, Found, closing_distances, nothing
+from robokin.inverse.verify import CLOSES, Found, closing_distances, merged, nothing
 from robokin.kernel.chain import Chain
 from robokin.kernel.frames import pose
 from robokin.kernel.ranks import RANK
-from robokin.kernel.residual import error_and_jacobian
+from robokin.kernel.residual import distance_and_angle, error_and_jacobian
 
 STARTS = 64
 """Starts of a search for one target; PUMA's and Panda's poses are met from 8 of them in 99.95 % of the cases."""
@@ -53,15 +53,10 @@ def numeric_solutions(
         error, _ = error_and_jacobian(chain, many, drawn, analysis.size)
         best = np.argsort(np.sum(error * error, axis=1), kind="stable")[:count]
         q, error = descend(chain, many[: len(best)], drawn[best], analysis.size, limits=wide, steps=60)
-        position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
+        position, angle = distance_and_angle(error)
         closes = (position * analysis.size <= closing_distances(chain, q, analysis.size)) & (angle <= CLOSES)
         found = Found(np.full(len(q), i), q[:, :own], position * analysis.size, angle).pick(closes)
-        parts = Found(
-            np.concatenate([parts.index, found.index]),
-            np.concatenate([parts.q, found.q]),
-            np.concatenate([parts.position, found.position]),
-            np.concatenate([parts.angle, found.angle]),
-        )
+        parts = merged(parts, found)
     return parts
 
 

@@ -20,6 +20,7 @@ from robokin.inverse.self_motion.pose_correction import CLOSES, SETTLED, errors,
 from robokin.inverse.verify import Found, wrapped
 from robokin.kernel.frames import pose
 from robokin.kernel.ranks import TASK_RANK
+from robokin.kernel.residual import distance_and_angle
 from robokin.model.robot import LIMIT_TOLERANCE
 from robokin.spatial import nearest_rotation
 
@@ -85,7 +86,7 @@ class BoundedTask:
         own = len(self.moving)
         q = np.tile(self.rest, (len(x), 1))
         q[:, self.moving] = (x * self.scale)[:, :own]
-        position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
+        position, angle = distance_and_angle(error)
         closes = (np.max(np.abs(error), axis=1, initial=0.0) <= CLOSES) & self.inside(x)
         return Found(index, q, position * self.size, angle).pick(closes)
 

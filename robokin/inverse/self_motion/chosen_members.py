@@ -15,7 +15,7 @@ from robokin.inverse.self_motion.curve_tracing import Curve
 from robokin.inverse.self_motion.nearest_member import members_near, nearest_on_each
 from robokin.inverse.verify import CLOSES, within_limits
 from robokin.kernel.chain import Chain
-from robokin.kernel.residual import error_and_jacobian
+from robokin.kernel.residual import distance_and_angle, error_and_jacobian
 from robokin.spatial.angles import TURN, circled
 
 
@@ -96,7 +96,7 @@ def _closing(chain: Chain, T: Array, members: list[Array | None], size: float) -
     given = [k for k, member in enumerate(members) if member is not None]
     q = np.array([members[k] for k in given]).reshape(-1, chain.n)
     error, _ = error_and_jacobian(chain, T[given], q, size)
-    off = np.maximum(np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1))
+    off = np.maximum(*distance_and_angle(error))
     out: list[Array | None] = [None] * len(members)
     for k, member, left in zip(given, q, off.tolist(), strict=True):
         out[k] = member if left <= CLOSES else None

@@ -26,7 +26,7 @@ from robokin.inverse.self_motion.members import listed_once
 from robokin.inverse.self_motion.solution_sets import families, on_curve
 from robokin.inverse.verify import CLOSES, Found, merged
 from robokin.kernel.chain import Chain
-from robokin.kernel.residual import error_and_jacobian
+from robokin.kernel.residual import distance_and_angle, error_and_jacobian
 from robokin.spatial.angles import circled
 
 ROUNDS = 4
@@ -94,7 +94,7 @@ def listed_with_more(
             return found, motions, unclear, beside
         again = again.pick(np.isin(again.index, grown))
         kept = found.pick(~np.isin(found.index, growing))
-        found = merged(kept, Found(targets[again.index], again.q, again.position, again.angle))
+        found = merged(kept, again.numbered(targets))
         found = found.pick(np.argsort(found.index, kind="stable"))
         motions |= {int(targets[k]): said[k] for k in grown.tolist() if k in said}
         unclear = np.union1d(unclear, targets[np.intersect1d(doubtful, grown)])
@@ -133,7 +133,7 @@ def _searched(chain: Chain, T: Array, size: float) -> Found:
     start = np.random.default_rng(11).uniform(-span, span, (GUESSES, chain.n))
     index = np.repeat(np.arange(len(T)), GUESSES)
     q, error = descend(chain, T[index], np.tile(start, (len(T), 1)), size, steps=GUESS_STEPS)
-    position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
+    position, angle = distance_and_angle(error)
     return Found(index, q, position * size, angle).pick((position <= CLOSES) & (angle <= CLOSES))
 
 
@@ -158,5 +158,5 @@ def _solutions(chain: Chain, T: Array, targets: Index, seeds: list[Array], size:
     index = np.repeat(np.arange(len(targets)), [len(part) for part in seeds])
     q = np.concatenate(seeds)
     error, _ = error_and_jacobian(chain, T[targets[index]], q, size)
-    position, angle = np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1)
+    position, angle = distance_and_angle(error)
     return Found(index, q, position * size, angle).pick((position <= CLOSES) & (angle <= CLOSES))
