@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from robokin.inverse.joint_paths import interpolate_joints as interpolate_joints
     from robokin.inverse.solve import solve_ik as solve_ik
     from robokin.inverse.tip_targets import solve_tips as solve_tips
+    from robokin.inverse.trajectories import trajectory as trajectory
     from robokin.kernel.native_kernel import kernel_in_use as kernel_in_use
     from robokin.kinematics.dh_table import to_convention as to_convention
     from robokin.kinematics.forward import forward_kinematics as forward_kinematics
@@ -89,6 +90,7 @@ _HOMES = {
     "singular_configurations": "robokin.kinematics.singular",
     "follow_line": "robokin.inverse.joint_paths",
     "interpolate_joints": "robokin.inverse.joint_paths",
+    "trajectory": "robokin.inverse.trajectories",
     "mobility_of": "robokin.mobility.verdict",
     "manoeuvrability_of": "robokin.mobility.manoeuvrability",
     "Mechanism": "robokin.model",

@@ -277,6 +277,10 @@ RIGHT = {
     },
     "follow_line": {"robot": PLANAR, "start": [0.3, 0.4], "T": PLANAR_T, "steps": 2, "limits": True, "task": None},
     "interpolate_joints": {"robot": PLANAR, "start": [0.3, 0.4], "end": [0.5, 0.6], "steps": 2, "limits": True},
+    "trajectory": {
+        "robot": PLANAR, "points": [[0.3, 0.4], [0.5, 0.6]], "duration": 2.0, "profile": "cubic", "max_velocity": 1.0,
+        "max_acceleration": 9.0, "passing": "stop", "blend": 0.5, "steps": 2, "rate": None, "limits": True,
+    },
     "to_convention": {"robot": PUMA, "convention": "modified"},
     "mobility_of": {"mechanism": FOUR_BAR, "between": ("rocker", "ground"), "seed": 0},
     "manoeuvrability_of": {"base": CAR},

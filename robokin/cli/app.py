@@ -17,6 +17,7 @@ from robokin.errors import InputError, shown
 
 COMMANDS = {
     "list": "The library of robots and mechanisms.",
+    "new": "A robot of your own: an example, a copy, or a pasted table.",
     "show": "A robot's table, its class, its wrist and its freedoms.",
     "convert": "A robot in another convention or format: YAML, URDF, tables.",
     "validate": "Check descriptions.",

@@ -21,6 +21,7 @@ COMMAND_WORDS = {
     "list": "ls robots library search find",
     "show": "info describe print table dh cat",
     "convert": "export translate write save urdf latex markdown",
+    "new": "create init start template make import",
     "validate": "lint verify valid",
     "schema": "format",
 }

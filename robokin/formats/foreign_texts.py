@@ -19,7 +19,10 @@ ROOTS = {
 START = 4096
 """Characters in which a file says what it is."""
 
-ROWS = "expected YAML: `robokin: 1`, `name: …`, `joints:` and a line `- {type: R, d: …, a: …, alpha: …}` for each row"
+ROWS = (
+    "expected YAML: `robokin: 1`, `name: …`, `joints:` and a line `- {type: R, d: …, a: …, alpha: …}` for each row, "
+    "which `robokin new FILE --table TABLE` makes of it"
+)
 
 
 def other_format(text: str) -> str:

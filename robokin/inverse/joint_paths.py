@@ -26,12 +26,12 @@ from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_finite, expect_flag, expect_whole
 from robokin.inverse.follow import MOST, Follows, follower_of
 from robokin.inverse.solve import target_poses
+from robokin.inverse.tool_curves import Line, ToolCurve
 from robokin.kernel.ranks import RANK
 from robokin.kinematics.forward import forward_kinematics
 from robokin.kinematics.velocity import TaskName, differential_kinematics, lost_directions, motion_task
 from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.model.robot import LIMIT_TOLERANCE
-from robokin.spatial import axis_angle_from_rotation, rotation_from_axis_angle, transform
 
 PathTask = Literal["pose", "position"]
 
@@ -61,7 +61,8 @@ class Path(Answer):
     t: (m,) time from 0 to 1; s: (m,) fraction of the path; q: (m, n) [rad | m]; T: (m, 4, 4) [m]; fraction: of the path
     that can be followed, 1 if all; events: in the order in which they come; manipulability: (m,) [SI]; steps: how many
     were asked for, so that m is steps + 1 if all can be followed; kind: whether the joints move together or the tool
-    in a line.
+    in a line or an arc. Of a path in time t is in seconds, from 0 to its duration [s] if all can be followed, and
+    velocity and acceleration are (m, n) [rad/s | m/s, per s²]; else these three are None.
     """
 
     t: Array
@@ -73,7 +74,10 @@ class Path(Answer):
     manipulability: Array
     steps: int
     robot: Robot
-    kind: Literal["joint", "line"] = "joint"
+    kind: Literal["joint", "line", "arc"] = "joint"
+    duration: float | None = None
+    velocity: Array | None = None
+    acceleration: Array | None = None
 
     @property
     def complete(self) -> bool:
@@ -91,7 +95,7 @@ class Path(Answer):
 
     def __repr__(self) -> str:
         """A line: what moves, how far, and how much of it can be followed."""
-        what = "line" if self.kind == "line" else "joints"
+        what = "joints" if self.kind == "joint" else self.kind
         how = "" if self.complete else f", followed up to {self.fraction:.4g}"
         return f"<path of {self.robot.id or self.robot.name} ({what}): {len(self)} rows, {self.length:.6g} m{how}>"
 
@@ -136,15 +140,22 @@ def follow_line(
     `limits`), where there is no solution, or where a joint would jump. Raises InputError for other shapes, for what is
     no pose and for `steps` below 1. The time law is that of `interpolate_joints`.
     """
-    first, limits = _configuration(robot, start, "start"), expect_flag(limits, "limits")
+    first = _configuration(robot, start, "start")
     target = target_poses(T)
     if target.ndim != 2:
         raise InputError(f"found targets of shape {target.shape}, expected one, (4, 4)")
-    chosen = line_task(robot) if task is None else cast(PathTask, expect_choice(task, ("pose", "position"), "task"))
     t = _times(steps)
-    s = time_law(t)
-    line = Line(forward_kinematics(robot, first), target)
-    follower = follower_of(robot, line.at, chosen, s)
+    path = follow_curve(robot, first, Line(forward_kinematics(robot, first), target), t, time_law(t), limits, task)
+    return replace(path, kind="line")
+
+
+def follow_curve(
+    robot: Robot, first: Array, curve: ToolCurve, t: Array, s: Array, limits: bool, task: PathTask | None
+) -> Path:
+    """The tool along a curve from where it is at first (n,), at parts s (m,) of the way: see `follow_line`."""
+    limits = expect_flag(limits, "limits")
+    chosen = line_task(robot) if task is None else cast(PathTask, expect_choice(task, ("pose", "position"), "task"))
+    follower = follower_of(robot, curve.at, chosen, s)
     rows, fraction, event = [first], 1.0, None
     if limits and not robot.within_limits(first):
         fraction, event = _leaves(robot, first, first)
@@ -160,12 +171,12 @@ def follow_line(
         if limits and not robot.within_limits(q):
             fraction, event = _limit_event(robot, follower, rows[-1], float(s[i - 1]), reached)
         elif why:
-            fraction, event = reached, _stopped(robot, line, reached, q, why, chosen)
+            fraction, event = reached, _stopped(robot, reached, q, why, chosen)
         else:
             rows.append(q)
     m = len(rows)
     counted: TaskName | None = "position" if chosen == "position" else None
-    return replace(_path(robot, t[:m], s[:m], np.array(rows), fraction, event, steps, counted), kind="line")
+    return _path(robot, t[:m], s[:m], np.array(rows), fraction, event, len(s) - 1, counted)
 
 
 def no_path(robot: Robot, start: ArrayLike, reason: str, steps: int = 100) -> Path:
@@ -178,20 +189,6 @@ def no_path(robot: Robot, start: ArrayLike, reason: str, steps: int = 100) -> Pa
 def line_task(robot: Robot) -> PathTask:
     """What follows a line if nothing is said: the position for arms that place a point, the pose for others."""
     return "position" if motion_task(robot).name == "position" else "pose"
-
-
-class Line:
-    """The poses between two, by the fraction s of the way."""
-
-    def __init__(self, first: Array, last: Array) -> None:
-        self.first, self.p = first, last[:3, 3] - first[:3, 3]
-        axis, angle = axis_angle_from_rotation(first[:3, :3].T @ last[:3, :3])
-        self.axis, self.angle = axis, float(angle)
-
-    def at(self, s: Array) -> Array:
-        """(m, 4, 4) at s (m,)."""
-        R = self.first[:3, :3] @ rotation_from_axis_angle(np.broadcast_to(self.axis, (len(s), 3)), s * self.angle)
-        return transform(R, self.first[:3, 3] + s[:, None] * self.p)
 
 
 def _times(steps: int) -> Array:
@@ -259,7 +256,7 @@ def _limit_event(robot: Robot, follower: Follows, q: Array, s: float, reached: f
     return low, Event("limit", low, f"{words[k]} leaves its limits", k + 1 if k < robot.n else None, value)
 
 
-def _stopped(robot: Robot, line: Line, s: float, q: Array, why: str, task: PathTask) -> Event:
+def _stopped(robot: Robot, s: float, q: Array, why: str, task: PathTask) -> Event:
     """What ends a line at s with the configuration q."""
     found = differential_kinematics(robot, q, task=cast(TaskName, task))
     lost = ""
@@ -278,13 +275,13 @@ def _path(
 ) -> Path:
     T = forward_kinematics(robot, q)
     found = differential_kinematics(robot, q, task=task)
-    events = _singular(robot, s, q, found.singular_values, task)
+    events = singularities(robot, s, q, found.singular_values, task)
     if event is not None:
         events.append(event)
     return Path(t, s, q, T, fraction, tuple(events), found.manipulability, steps, robot)
 
 
-def _singular(robot: Robot, s: Array, q: Array, values: Array, task: TaskName | None) -> list[Event]:
+def singularities(robot: Robot, s: Array, q: Array, values: Array, task: TaskName | None) -> list[Event]:
     """The rows where the least singular value has a minimum below NEARLY, one for each pass."""
     least = values[:, -1] if values.shape[1] else np.full(len(s), np.inf)
     near = np.flatnonzero(least < NEARLY)

@@ -1,49 +1,144 @@
-"""Paths from a configuration to a pose: which solution they end with."""
+"""Paths from a configuration through others and poses: which solutions they take, and how they get there."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Literal
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
 
 from robokin.arrays import Array
-from robokin.inverse.joint_paths import Path, follow_line, interpolate_joints, line_task, no_path
+from robokin.errors import InputError
+from robokin.inverse.joint_paths import (
+    Path,
+    PathTask,
+    follow_curve,
+    interpolate_joints,
+    line_task,
+    no_path,
+    time_law,
+)
 from robokin.inverse.solutions import Result
 from robokin.inverse.solve import solve_ik
+from robokin.inverse.tool_curves import CircularArc, Line, ToolCurve
+from robokin.inverse.trajectories import Timing, joined, row_times, timed_curve, trajectory
 from robokin.kinematics.forward import forward_kinematics
 from robokin.model import Robot
 
+Way = Literal["joint", "line", "arc"]
 
-def path_to_pose(
-    robot: Robot, start: Array, T: Array, task: str = "pose", steps: int = 100, *, line: bool = False,
-    limits: bool = True, follows: Literal["pose", "position"] | None = None,
-) -> Path:  # fmt: skip
-    """A path from joint values start: (n,) [rad | m] to a pose T: (4, 4) [m], to its solution nearest to the start.
 
-    task: what of the pose is asked for, as `solve_ik` has it; a position alone keeps the start's orientation, where the
-    arm can turn its tool. line: whether the tool goes along a straight line, as `follow_line` has it, rather than all
-    joints together; follows: what follows the line, by default the position for arms that only place a point. A pose
-    that is not reached makes a path of its start alone.
+@dataclass(frozen=True, eq=False)
+class Goal:
+    """Where a path goes: joint values q (n,), or a pose T (4, 4) [m] with its task, as `solve_ik` has it."""
+
+    q: Array | None = None
+    T: Array | None = None
+    task: str = "pose"
+
+
+@dataclass(frozen=True, eq=False)
+class Manner:
+    """How a path gets there.
+
+    way: all joints together, or the tool along straight lines or an arc, which goes by the place `via` (3,) [m];
+    limits: whether it ends where a joint leaves them; follows: what follows a line, the whole pose or the position;
+    timing: None for a path without a duration, whose t is from 0 to 1.
     """
-    if task == "position" and line_task(robot) == "pose":
-        T = T.copy()
-        T[:3, :3] = forward_kinematics(robot, start)[:3, :3]
-    elif task == "position":
-        follows = follows or "position"
-    elif task == "approach" and line:
-        # The roll about the tool's axis is free: that of the solution nearest to the start.
-        found = _nearest(robot, start, T, limits, "approach")
+
+    way: Way = "joint"
+    via: Array | None = None
+    limits: bool = True
+    follows: PathTask | None = None
+    timing: Timing | None = None
+
+
+def path_through(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> Path:
+    """A path from joint values start (n,) [rad | m] through all goals, to a pose by the solution nearest to the last.
+
+    A position alone keeps the orientation of what was before, where the arm can turn its tool. A pose that is not
+    reached makes a path of its start alone. steps: of the whole path by joints, of each piece of a line.
+    """
+    if manner.way == "joint":
+        return _by_joints(robot, start, goals, steps, manner)
+    if manner.way == "arc" and len(goals) > 1:
+        raise InputError(f"found {len(goals)} ends of an arc, expected one")
+    paths: list[Path] = []
+    for goal in goals:
+        path = _by_tool(robot, paths[-1].q[-1] if paths else start, goal, steps, manner)
+        paths.append(path)
+        if not path.complete:
+            break
+    # What is not reached counts as a part of the way.
+    paths_left = len(goals) - len(paths)
+    whole = joined(paths)
+    if not paths_left:
+        return whole
+    share = len(paths) / len(goals)
+    events = tuple(replace(event, fraction=event.fraction * share) for event in whole.events)
+    return replace(whole, s=whole.s * share, fraction=whole.fraction * share, events=events)
+
+
+def _by_joints(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> Path:
+    """All joints together, from point to point."""
+    points = [start]
+    for goal in goals:
+        if goal.q is not None:
+            points.append(goal.q)
+            continue
+        found = _nearest(robot, points[-1], *_asked(robot, points[-1], goal, manner), manner.limits)
         if not found.solutions:
-            return replace(no_path(robot, start, found.reason or "not reached", steps), kind="line")
-        T = forward_kinematics(robot, found.solutions[0].q)
-    if line:
-        return follow_line(robot, start, T, steps, limits, follows)
-    found = _nearest(robot, start, T, limits, "approach" if task == "approach" else follows or line_task(robot))
-    if not found.solutions:
-        return no_path(robot, start, found.reason or "not reached", steps)
-    return interpolate_joints(robot, start, found.solutions[0].q, steps, limits)
+            return no_path(robot, start, found.reason or "not reached", steps)
+        points.append(found.solutions[0].q)
+    timing = manner.timing
+    if timing is None and len(points) == 2:
+        return interpolate_joints(robot, points[0], points[1], steps, manner.limits)
+    told: dict[str, Any] = {}
+    if timing is not None:
+        told = {name: getattr(timing, name) for name in ("duration", "profile", "passing", "blend", "rate")}
+        told |= {"max_velocity": timing.limits.velocity, "max_acceleration": timing.limits.acceleration}
+    path = trajectory(robot, np.array(points), steps=steps, limits=manner.limits, **told)
+    return path if timing is not None else replace(path, duration=None, velocity=None, acceleration=None)
 
 
-def _nearest(robot: Robot, start: Array, T: Array, limits: bool, task: str) -> Result:
+def _by_tool(robot: Robot, start: Array, goal: Goal, steps: int, manner: Manner) -> Path:
+    """The tool along a line or an arc."""
+    first = forward_kinematics(robot, start)
+    follows = manner.follows
+    if goal.q is not None:
+        T = forward_kinematics(robot, goal.q)
+    else:
+        T, task = _asked(robot, start, goal, manner)
+        if goal.task == "position" and line_task(robot) == "position":
+            follows = follows or "position"
+        if task == "approach":
+            # The roll about the tool's axis is free: that of the solution nearest to the start.
+            found = _nearest(robot, start, T, "approach", manner.limits)
+            if not found.solutions:
+                path = no_path(robot, start, found.reason or "not reached", steps)
+                return replace(path, kind=manner.way)
+            T = forward_kinematics(robot, found.solutions[0].q)
+    curve: ToolCurve = Line(first, T) if manner.via is None else CircularArc(first, manner.via, T)
+    if manner.timing is None:
+        t = row_times(1.0, steps, None)
+        path = follow_curve(robot, start, curve, t, time_law(t), manner.limits, follows)
+    else:
+        path = timed_curve(robot, start, curve, manner.timing, steps, manner.limits, follows)
+    return replace(path, kind=manner.way)
+
+
+def _asked(robot: Robot, start: Array, goal: Goal, manner: Manner) -> tuple[Array, str]:
+    """The pose (4, 4) that a goal comes to from joint values start (n,), and its task."""
+    assert goal.T is not None
+    if goal.task == "position" and line_task(robot) == "pose":
+        T = goal.T.copy()
+        T[:3, :3] = forward_kinematics(robot, start)[:3, :3]
+        return T, manner.follows or line_task(robot)
+    return goal.T, "approach" if goal.task == "approach" else manner.follows or line_task(robot)
+
+
+def _nearest(robot: Robot, start: Array, T: Array, task: str, limits: bool) -> Result:
     """The answer with the solution nearest to the start alone."""
     result = solve_ik(robot, T, limits=limits, near=start, task=task, most=1)  # type: ignore[arg-type]
     assert isinstance(result, Result)

@@ -1,4 +1,4 @@
-"""Schemas of `robokin list`, `show`, `convert` and `validate`."""
+"""Schemas of `robokin list`, `show`, `convert`, `new` and `validate`."""
 
 from __future__ import annotations
 
@@ -89,6 +89,23 @@ def convert() -> Schema:
     about = _about()
     text = "A robot, as `show` has it, in the convention asked for, or a tree."
     return documents("convert", text, [], robot=_robot(about), tree=_tree(about))
+
+
+def new() -> Schema:
+    """Documents of `robokin new`."""
+    document = record(
+        "A description that was made.",
+        {
+            **head("file", text("The file that was written, - for none.")),
+            "from": maybe(text("The robot or the file that it is a copy of."), "where it is none"),
+            "joints": maybe(text("The rows' types in a word, such as RRP, F for a fixed one."), "of a copy"),
+            "convention": maybe(word("The convention of its table.", "standard", "modified"), "of a copy"),
+            "notes": texts("How a table was read, where it left that open."),
+            "missing": texts("The names of lengths for which a table gives no value."),
+            "description": text("The description itself, YAML."),
+        },
+    )
+    return documents("new", "A description of a robot of one's own.", ["description"], description=document)
 
 
 def _about() -> dict[str, Schema]:

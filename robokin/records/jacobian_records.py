@@ -28,6 +28,15 @@ class JacobianRecords:
     units: Units
     frame: Literal["base", "tool"] = "base"
     task: TaskName | None = None
+    force: tuple[float, ...] = ()
+    """The force [N] and the moment [N m] at the tool's origin, six numbers in the frame's axes; empty for none."""
+
+    def torques(self, found: Differential) -> Array:
+        """The joint torques [N m] and forces of slides [N], (m, n), that hold the force: τ = Jᵀ F.
+
+        Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, eq. (3.111).
+        """
+        return np.asarray(np.einsum("mij,i->mj", found.jacobian, np.array(self.force)) + 0.0)
 
     def matrices(self, found: Differential) -> Array:
         """The Jacobians (m, 6, n) in the length unit and radians."""
@@ -44,6 +53,7 @@ class JacobianRecords:
     def records(self, q: Array, found: Differential) -> Iterator[dict[str, Any]]:
         """The JSON documents of a block."""
         kind = found.task
+        torques = self.torques(found) if self.force else found.jacobian
         rows = zip(
             q.tolist(),
             self.matrices(found).tolist(),
@@ -74,4 +84,6 @@ class JacobianRecords:
                 "singular_direction": [{"twist": one.twist.tolist(), "words": one.words} for one in lost] or None,
                 "null_space_joints": list(null),
             }
+            if self.force:
+                record |= {"force": [*self.force], "torques": torques[i].tolist()}
             yield record

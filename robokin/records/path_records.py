@@ -34,7 +34,14 @@ class PathRecords:
 
     def columns(self) -> list[str]:
         """The columns' names."""
-        return ["t", *(f"q{i}" for i in range(1, self.robot.n + 1)), *pose_columns("rpy")]
+        joints = range(1, self.robot.n + 1)
+        columns = ["t", *(f"q{i}" for i in joints), *pose_columns("rpy")]
+        return columns + [f"{name}{i}" for name in ("qd", "qdd") if self.timed for i in joints]
+
+    @property
+    def timed(self) -> bool:
+        """Whether the path is in seconds, with velocities and accelerations."""
+        return self.path.duration is not None
 
     def joints(self) -> Array:
         """The joint values (m, n) in the units."""
@@ -46,15 +53,21 @@ class PathRecords:
         return q
 
     def rows(self) -> Array:
-        """(m, 7 + n) the columns in the units."""
+        """(m, 7 + n), or of a path in time (m, 7 + 3 n): the columns in the units."""
         poses = pose_table(poses_in(self.path.T.copy(), self.units), "rpy", self.units)
-        return np.concatenate([self.path.t[:, None], self.joints(), poses], axis=1)
+        factors = joint_factors(self.robot, self.units)
+        rates = (self.path.velocity, self.path.acceleration)
+        timed = [rate / factors + 0.0 for rate in rates if rate is not None]
+        return np.concatenate([self.path.t[:, None], self.joints(), poses, *timed], axis=1)
 
     def records(self) -> Iterator[dict[str, Any]]:
         """A record for each row."""
         n = self.robot.n
         for row in self.rows().tolist():
-            yield {"t": row[0], "q": row[1 : n + 1], "position": row[n + 1 : n + 4], "rpy": row[n + 4 :]}
+            record = {"t": row[0], "q": row[1 : n + 1], "position": row[n + 1 : n + 4], "rpy": row[n + 4 : n + 7]}
+            if self.timed:
+                record |= {"velocity": row[n + 7 : 2 * n + 7], "acceleration": row[2 * n + 7 :]}
+            yield record
 
     def document(self) -> dict[str, Any]:
         """The whole path with its summary."""
@@ -63,6 +76,7 @@ class PathRecords:
             **envelope("robot", self.robot.id, self.units),
             "kind": self.path.kind,
             "steps": path.steps,
+            **({"duration": path.duration, "fastest": self.fastest()} if self.timed else {}),
             "complete": path.complete,
             "fraction": path.fraction,
             "length": path.length / self.units.metres,
@@ -90,9 +104,17 @@ class PathRecords:
         q = self.path.q
         return in_units(np.max(q, axis=0) - np.min(q, axis=0), joint_factors(self.robot, self.units))
 
+    def fastest(self) -> dict[str, list[float]]:
+        """The greatest velocity and acceleration of each joint among the rows."""
+        factors = joint_factors(self.robot, self.units)
+        named = {"velocity": self.path.velocity, "acceleration": self.path.acceleration}
+        return {
+            name: np.max(np.abs(rates) / factors, axis=0).tolist() for name, rates in named.items() if rates is not None
+        }
+
     def least(self) -> float:
         """The least manipulability on the way, of the Jacobian in the length unit and radians."""
-        task: Any = "position" if self.path.kind == "line" and line_task(self.robot) == "position" else None
+        task: Any = "position" if self.path.kind != "joint" and line_task(self.robot) == "position" else None
         i = int(np.argmin(self.path.manipulability))
         found = differential_kinematics(self.robot, self.path.q[i : i + 1], task=task)
         return float(JacobianRecords(self.robot, self.units, "base", task).volumes(found)[0])

@@ -146,6 +146,10 @@ def jacobian() -> Schema:
             "singular_direction": maybe(items(LOST, "Directions that are lost here."), "where nothing is lost"),
             "null_space_joints": items(whole("A joint, from 1.", 1), "Joints that can move while the tool stands."),
         },
+        {
+            "force": numbers("The force [N] and the moment [N m] that the tool is to exert, in the frame's axes.", 6),
+            "torques": numbers("What the joints have to give for it: Jᵀ F [N m, of slides N]."),
+        },
     )
     return documents("jacobian", "Jacobians.", ["jacobian"], jacobian=document)
 
@@ -182,7 +186,20 @@ def singular() -> Schema:
 
 def path() -> Schema:
     """Documents of `robokin path`."""
-    row = {"t": number("Time from 0 to 1 [1].", 0.0), "q": Q, "position": POSITION, "rpy": RPY}
+    row = {
+        "t": number("Time [s], of a path without a duration from 0 to 1 [1].", 0.0),
+        "q": Q,
+        "position": POSITION,
+        "rpy": RPY,
+    }
+    rates = {
+        "velocity": numbers("The joints' velocities [joint/s]."),
+        "acceleration": numbers("The joints' accelerations [joint/s²]."),
+    }
+    timed = {
+        "duration": number("How long it takes [s].", 0.0),
+        "fastest": record("The greatest of each joint among the rows, without sign.", rates),
+    }
     event = record(
         "Something on the way.",
         {
@@ -197,7 +214,7 @@ def path() -> Schema:
         "A path.",
         {
             **head("robot", ROBOT),
-            "kind": word("How the tool moves.", "joint", "line"),
+            "kind": word("How the tool moves.", "joint", "line", "arc"),
             "steps": whole("Steps that were asked for.", 1),
             "complete": flag("Whether the end is reached."),
             "fraction": number("The part of the path that can be followed, from 0 to 1 [1].", 0.0),
@@ -205,8 +222,9 @@ def path() -> Schema:
             "greatest_moves": numbers("How far apart each joint's least and greatest values are [joint]."),
             "least_manipulability": number("The least √det(J Jᵀ) on the way.", 0.0),
             "events": items(event, "What happens on the way, in its order."),
-            "path": items(record("A row.", row), "The rows, from the start to where the path ends."),
+            "path": items(record("A row.", row, rates), "The rows, from the start to where the path ends."),
         },
+        timed,
     )
-    line = record("A row (JSON lines).", {**head("robot", ROBOT), **row})
+    line = record("A row (JSON lines).", {**head("robot", ROBOT), **row}, rates)
     return documents("path", "A path; a line of JSON lines holds one row.", [], path=document, row=line)

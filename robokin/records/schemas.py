@@ -11,6 +11,7 @@ HOMES = {
     "list": "description_schemas.list_",
     "show": "description_schemas.show",
     "convert": "description_schemas.convert",
+    "new": "description_schemas.new",
     "validate": "description_schemas.validate",
     "fk": "pose_schemas.fk",
     "ik": "solution_schemas.ik",

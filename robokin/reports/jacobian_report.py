@@ -33,10 +33,11 @@ def taken_by(kind: str, n: int) -> list[str]:
     """The names that an answer has itself, in CSV or in JSON."""
     if kind == "csv":
         values = [f"sigma{i}" for i in range(1, n + 1)]
-        return [*_columns(n), "rank", *values, "manipulability", "condition"]
+        torques = [f"tau{i}" for i in range(1, n + 1)]
+        return [*_columns(n), "rank", *values, "manipulability", "condition", *torques]
     return ["schema", "robot", "id", "units", "jacobian_units", "q", "frame", "task", "jacobian", "rank", "full_rank",
             "size", "singular_values", "manipulability", "condition", "singular_direction",
-            "null_space_joints"]  # fmt: skip
+            "null_space_joints", "force", "torques"]  # fmt: skip
 
 
 @dataclass
@@ -87,16 +88,20 @@ class JacobianReport(AnswerStream):
             if not header:
                 count = found.singular_values.shape[1]
                 values = [f"sigma{i}" for i in range(1, count + 1)]
-                header = csv_header([*names, "rank", *values, "manipulability", "condition"])
+                more = [f"tau{i}" for i in range(1, self.records.robot.n + 1)] if self.records.force else []
+                header = csv_header([*names, "rank", *values, "manipulability", "condition", *more])
                 yield self.carried.before(header, b"")
             numbers = np.concatenate([q, self.records.matrices(found).reshape(len(q), -1)], axis=1).tolist()
             ends = zip(
                 found.rank.tolist(), found.singular_values.tolist(), self.records.volumes(found).tolist(), strict=True
             )
             conditions = ["" if np.isinf(value) else value for value in found.condition.tolist()]
+            held = self.records.torques(found).tolist() if self.records.force else [[] for _ in numbers]
             rows = [
-                [*row, rank, *singular, volume, condition]
-                for row, (rank, singular, volume), condition in zip(numbers, ends, conditions, strict=True)
+                [*row, rank, *singular, volume, condition, *torques]
+                for row, (rank, singular, volume), condition, torques in zip(
+                    numbers, ends, conditions, held, strict=True
+                )
             ]
             yield self.carried.before(b"", csv_records(None, rows))
 
@@ -150,6 +155,9 @@ class JacobianReport(AnswerStream):
             ("manipulability", f"{record['manipulability']:.9g}"),
             ("condition", "infinite" if condition is None else show(condition)),
         ]
+        if "torques" in record:
+            slides = "" if self.records.robot.revolute.all() else ", of slides N"
+            entries.append(("torques", f"{listed(record['torques'])}  (N m{slides}, for the force at the tool)"))
         entries += [("lost", one["words"]) for one in record["singular_direction"] or []]
         if record["null_space_joints"]:
             entries.append(("self-motion", f"joints {', '.join(map(str, record['null_space_joints']))}"))

@@ -72,13 +72,18 @@ class PathReport:
         from robokin.reports.page_tables import heading, pairs, render
 
         robot, path, units = self.records.robot, self.records.path, self.records.units
-        what = "a straight line" if path.kind == "line" else "joint by joint"
+        what = {"line": "a straight line", "arc": "an arc", "joint": "joint by joint"}[path.kind]
         entries = [
             ("steps", f"{path.steps}"),
             ("length", f"{show(path.length / units.metres)} {units.length}"),
             ("joint moves", "  ".join(show(value) for value in self.records.moves())),
             ("least manipulability", f"{self.records.least():.9g}"),
         ]
+        if path.duration is not None:
+            fastest = self.records.fastest()
+            entries.insert(1, ("duration", f"{show(path.duration)} s"))
+            for name in ("velocity", "acceleration"):
+                entries.append((f"greatest {name}", "  ".join(f"{value:.6g}" for value in fastest[name])))
         entries += [("note", sentence) for sentence in self.notes()]
         rest = f"{what}, lengths in {units.length}, angles in {units.angle}"
         yield render(heading(robot.name, rest), "", pairs(entries))

@@ -19,6 +19,7 @@ from .conftest import invoke
 ROOT = Path(__file__).parent.parent.parent
 PENDANT, FINGERS, SCREW = (str(ROOT / name) for name in (
     "docs/trees/pendant.yaml", "docs/trees/fingers.yaml", "tests/data/screw.yaml"))  # fmt: skip
+TABLE = str(ROOT / "tests/data/pasted_table.txt")
 POSE = "Trans(500,100,300) RPY(180,0,45)"
 COMMANDS = [
     ["list", "puma"],
@@ -26,6 +27,7 @@ COMMANDS = [
     ["show", "puma560"], ["show", "puma560-craig"], ["show", "scara-frames"], ["show", "four-bar"], ["show", "car"],
     ["show", "planetary"], ["show", "omni-three"],
     ["convert", "puma560", "--convention", "modified"], ["convert", "puma560", "--convention", "frames"],
+    ["new", "-"], ["new", "-", "--from", "puma560"], ["new", "-", "--table", TABLE],
     ["convert", "human-hand"], ["show", "human-hand", "--tip", "index"],
     ["fk", "puma560", "--q", "home"], ["fk", "puma560", "--q", "home", "--frames", "--as", "euler"],
     ["fk", "human-hand", "--q", "fist"], ["dof", "human-hand"], ["show", "human-hand"],
@@ -36,6 +38,8 @@ COMMANDS = [
     ["path", FINGERS, "--tip", "index", "--from", "0,0,0", "--to", "0,5,6", "--line", "--steps", "3"],
     ["check", "dh", PENDANT, "--against", PENDANT], ["check", "dh", SCREW, "--against", PENDANT],
     ["convert", SCREW, "--convention", "modified"], ["convert", PENDANT, "--convention", "modified"],
+    ["jacobian", "planar2r", "--q", "1,2", "--force", "1,2,3"],
+    ["path", "planar2r", "--from", "0,10", "--to", "40,20", "--to", "5,5", "--duration", "2", "--steps", "3"],
     ["path", PENDANT, "--from", "0,0,0,0,10,0", "--to", "0,100,0,0,10,0", "--steps", "4"], ["singular", PENDANT],
     ["fk", "planar2r", "--q", "1,2", "--q", "3,4"], ["fk", "anthropomorphic", "--symbolic"],
     ["fk", "anthropomorphic", "--symbolic", "--frames", "--numbers"], ["fk", "puma560", "--q", "0,0,0,0,0,999"],

@@ -14,6 +14,8 @@ from robokin.cli.app import COMMANDS
 
 from .conftest import PROGRAM, environment
 
+ROOT = Path(__file__).parent.parent.parent
+
 
 def examples(call, command):
     lines = call(command, "--help").lines
@@ -56,6 +58,8 @@ def test_the_examples_run(call, command, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     rows = b"0,0,0,0,0,0\n10,20,30,40,50,60\n90,0,90,0,0,0\n"
     Path("joints.csv").write_bytes(rows)
+    Path("table.txt").write_text((ROOT / "tests/data/pasted_table.txt").read_text())
+    Path("joints-table.csv").write_text("i,theta,d,a,alpha\n1,0,89.159,0,90\n2,0,0,-425,0\n")
     Path("robots/arms").mkdir(parents=True)
     for name in ("arm.yaml", "robots/arm.yaml", "robots/arms/arm.yaml"):
         Path(name).write_text("robokin: 1\nname: Arm\njoints:\n  - {type: R, a: 1}\n")

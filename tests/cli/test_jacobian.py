@@ -115,3 +115,41 @@ def test_tables_fit_a_page(call):
 )
 def test_what_is_wrong_is_said(call, arguments, fragments):
     refused(call("jacobian", *arguments), *fragments)
+
+
+def test_torques_that_hold_a_force(call):
+    """A planar arm of links 1 m and 0.6 m: τ1 = x Fy - y Fx, τ2 = (x - x1) Fy - (y - y1) Fx."""
+    document = call("jacobian", "planar2r", "--q", "30,60", "--force", "3,-10,0", "--json").json
+    x1, y1, x, y = np.sqrt(3) / 2, 0.5, np.sqrt(3) / 2, 1.1
+    assert document["force"] == [3, -10, 0, 0, 0, 0]
+    assert document["torques"] == pytest.approx([x * -10 - y * 3, (x - x1) * -10 - (y - y1) * 3])
+    again = call("jacobian", "planar2r", "--q", "30,60", "--force", "3,-10,0", "--json", "--length", "mm").json
+    assert again["torques"] == pytest.approx(document["torques"])
+    assert "torques" in call("jacobian", "planar2r", "--q", "30,60", "--force", "3,-10,0").text
+    table = call("jacobian", "planar2r", "--q", "30,60", "--q", "10,20", "--force", "0,0,0,0,0,2", "-f", "csv")
+    assert table.columns[-2:] == ["tau1", "tau2"] and table.numbers[:, -2:].tolist() == [[2, 2], [2, 2]]
+    assert "tau1" not in call("jacobian", "planar2r", "--q", "30,60", "-f", "csv").text
+    assert "torques" not in call("jacobian", "planar2r", "--q", "30,60", "--json").json
+
+
+def test_the_power_of_a_force_is_that_of_its_torques(call):
+    """τ · dq = F · dx, in the base's axes and in the tool's; of slides too."""
+    rng = np.random.default_rng(0)
+    for robot in ("puma560", "stanford", "scara"):
+        F = rng.uniform(-5, 5, 6)
+        for frame in ("base", "tool"):
+            words = [
+                "--q",
+                ",".join(["12"] * robokin.load(robot).n),
+                "--frame",
+                frame,
+            ]
+            words += ["--force", ",".join(map(repr, F.tolist())), "--length", "m", "--json"]
+            document = call("jacobian", robot, *words).json
+            rates = rng.uniform(-1, 1, len(document["torques"]))
+            assert document["torques"] @ rates == pytest.approx(F @ (np.array(document["jacobian"]) @ rates))
+
+
+@pytest.mark.parametrize("text", ["1,2", "1,2,3,4", "a,b,c", "1,2,nan", ""])
+def test_a_wrong_force_is_told(call, text):
+    refused(call("jacobian", "planar2r", "--q", "30,60", "--force", text), "--force")

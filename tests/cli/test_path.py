@@ -154,3 +154,72 @@ def test_two_values_place_the_point_of_a_planar_arm(call):
     solid = call("path", "planar3r", "--from", "10,40,20", "--xyz", "0.9,1.2,0", "--line", "--json")
     assert flat.out == solid.out
     assert call("path", "puma560", "--from", "home", "--xyz", "300,200").status == 2
+
+
+def test_a_path_in_seconds(call):
+    words = [*FROM, "--to", END, "--to", START, "--max-velocity", "40", "--steps", "8"]
+    document = call(*words, "--json").json
+    assert (
+        document["duration"] == pytest.approx(2 * 1.875 * 30 / 40) and document["path"][-1]["t"] == document["duration"]
+    )
+    assert max(document["fastest"]["velocity"]) == pytest.approx(40)
+    assert document["path"][4]["q"] == pytest.approx([60, -20, 70, 10, 30, 0])
+    table = call(*words, "-f", "csv")
+    assert table.columns[-12:] == [f"{name}{k}" for name in ("qd", "qdd") for k in range(1, 7)]
+    assert np.abs(table.numbers[:, -12:-6]).max() == pytest.approx(40)
+    page = call(*words).text
+    assert "duration" in page and "2.8125 s" in page and "greatest velocity" in page
+    again = call("fk", "puma560", "-i", "-", "-f", "csv", stdin=table.out)
+    assert again.columns[0] == "t" and np.allclose(again.numbers_of("x"), table.numbers_of("x"))
+
+
+def test_ways_through_points(call):
+    words = ["path", "planar2r", "--from", "0,10", "--to", "40,20", "--to", "20,80", "--duration", "4", "-f", "csv"]
+    stop, spline, blend = (call(*words, *more) for more in ([], ["--spline"], ["--blend", "0.5"]))
+    moving = [np.abs(answer.numbers[1:-1, -4:-2]).max(axis=1).min() for answer in (stop, spline, blend)]
+    assert moving[0] < 1e-9 and min(moving[1:]) > 1.0
+    for answer in (stop, spline, blend):
+        assert answer.numbers[-1, 0] == 4.0 and answer.numbers[-1, 1:3] == pytest.approx([20, 80])
+
+
+def test_a_point_may_be_a_pose(call):
+    T = "Trans(-300, 700, 200) RPY(0, 70, 90)"
+    document = call(*FROM, "--to", T, "--to", END, "--duration", "2", "--steps", "2", "--json").json
+    assert document["complete"] and document["path"][-1]["q"] == pytest.approx([60, -20, 70, 10, 30, 0])
+    refused(call(*FROM, "--to", "Trans(1, 2) x"), "--to")
+
+
+def test_an_arc(call):
+    document = call(*FROM, "--xyz", "-300,700,200", "--arc", "-200,700,400", "--duration", "2", "--json").json
+    assert document["kind"] == "arc" and document["complete"]
+    p = np.array([row["position"] for row in document["path"]])
+    assert np.linalg.norm(p - [-200, 700, 400], axis=1).min() < 5
+    refused(call(*FROM, "--xyz", "-300,700,200", "--arc", "-300,700,200"), "on a line")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--duration", "0"], "--duration: found '0', expected seconds above 0"),
+        (["--duration", "soon"], "--duration: found 'soon'"),
+        (["--max-velocity", "-1"], "--max-velocity: found '-1', expected values above 0"),
+        (["--max-velocity", "1,2"], "--max-velocity"),
+        (["--max-velocity", "10", "--duration", "0.1"], "found a duration of 0.1 s, expected at least 5.625 s"),
+        (["--spline", "--blend", "0.2"], "--spline and --blend exclude each other"),
+        (["--spline", "--profile", "cubic"], "--profile is of pieces with a stop"),
+        (["--spline", "--line"], "--spline is of paths by joints, expected it without --line"),
+        (["--blend", "2"], "--blend: found '2', expected a part above 0 and up to 1"),
+        (["--profile", "quintc"], "--profile: found 'quintc'"),
+        (["--rate", "1e12"], "--rate: found '1e12'"),
+        (["--line", "--arc", "1,2,3"], "--line and --arc exclude each other"),
+        (["--xyz", "1,2,3"], "--to and --xyz exclude each other"),
+    ],
+)
+def test_slips_of_time_are_told(call, words, said):
+    refused(call(*FROM, "--to", END, *words), said)
+
+
+def test_slides_want_limits_of_their_own(call):
+    words = ["path", "scara", "--from", "0,60,100,0", "--to", "40,30,50,90", "--max-velocity"]
+    refused(call(*words, "90"), "found one value for joints that turn and slide, expected 4 values")
+    assert max(call(*words, "90,90,25,90", "--json").json["fastest"]["velocity"]) > 25

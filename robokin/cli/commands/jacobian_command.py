@@ -8,6 +8,7 @@ from robokin.cli.completion import named_poses, words
 from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
 from robokin.cli.options import DropOption, RobotArgument, choose, option
 from robokin.cli.statuses import say
+from robokin.errors import InputError, shown
 
 FRAMES = ("base", "tool")
 TASKS = ("pose", "position", "orientation")
@@ -49,6 +50,14 @@ def command(
         str | None, option("--frame", "FRAME", "The twist's axes: base or tool.  [default: base]", words(*FRAMES))
     ] = None,
     task: TaskOption = None,
+    force: Annotated[
+        str | None,
+        option(
+            "--force",
+            "FX,FY,FZ[,MX,MY,MZ]",
+            "Also the joint torques for this force (N) and moment (N m) of the tool, in the axes of --frame.",
+        ),
+    ] = None,
     drop: DropOption = False,
     output: ArrayOutputOptions,
     description: DescriptionOptions,
@@ -59,10 +68,14 @@ def command(
     radian, and its lengths are in the length unit. Rank, singular values and condition number have lengths in the
     arm's size; manipulability is that of the matrix as printed.
 
+    --force says what the tool exerts on what it touches, at its origin; the joints hold it with the torques Jᵀ F (N m,
+    of slides N, whatever the units), gravity and friction apart.
+
     Examples:
         robokin jacobian puma560 --q 10,20,30,40,50,60
         robokin jacobian puma560 --q 10,20,30,40,0,60 --frame tool --json
         robokin jacobian planar2r --q 30,60 --task position
+        robokin jacobian planar2r --q 30,60 --force 0,-10,0
         robokin jacobian puma560 --input joints.csv --output jacobians.npy
     """
     from robokin.cli.configurations import configurations
@@ -76,5 +89,22 @@ def command(
     model, units = description.robot(robot)
     carried = Carried(taken_by(kind, model.n), say, wanted=not drop and kind in ("csv", "json", "jsonl"))
     blocks, _, alone = configurations(model, units, q, input, carried)
-    JacobianReport(JacobianRecords(model, units, axes, counted), alone, carried).send(output.file, kind, blocks)
+    records = JacobianRecords(model, units, axes, counted, _wrench(force))
+    if records.force and kind == "npy":
+        raise InputError("--force: found an array as output, which holds the Jacobians, expected .csv, .jsonl or .json")
+    JacobianReport(records, alone, carried).send(output.file, kind, blocks)
     return 0
+
+
+def _wrench(text: str | None) -> tuple[float, ...]:
+    """The force [N] and the moment [N m] that are typed, six numbers; none for None. Raises InputError."""
+    from robokin.cli.arguments import parse_numbers, split_vector
+    from robokin.units import Units
+
+    if text is None:
+        return ()
+    count = len(split_vector(text))
+    if count not in (3, 6):
+        raise InputError(f"--force: found '{shown(text)}', expected three values in N, or six with the moment in N m")
+    values = parse_numbers(text, "--force", [False] * count, Units(), "a force in N, and a moment in N m")
+    return tuple(float(value) for value in [*values, 0.0, 0.0, 0.0][:6])

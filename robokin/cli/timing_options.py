@@ -1,0 +1,105 @@
+"""The options that say how a path takes its time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from robokin.cli.completion import words
+from robokin.cli.option_groups import OptionGroup
+from robokin.cli.options import choose, option
+from robokin.errors import InputError, shown
+
+if TYPE_CHECKING:
+    from robokin.arrays import Array
+    from robokin.inverse.trajectories import Timing
+    from robokin.model import Robot
+    from robokin.units import Units
+
+PROFILES = ("cubic", "quintic", "trapezoidal")
+
+
+class TimingOptions(OptionGroup):
+    """How long a path takes, and how joints speed up and slow down."""
+
+    duration: Annotated[str | None, option("--duration", "S", "How long it takes, in seconds.")] = None
+    max_velocity: Annotated[
+        str | None,
+        option("--max-velocity", "V", "As short as joints may be fast: one value a second for all, or one for each."),
+    ] = None
+    max_acceleration: Annotated[
+        str | None, option("--max-acceleration", "A", "The same of their acceleration, per second squared.")
+    ] = None
+    profile: Annotated[
+        str | None,
+        option("--profile", "NAME", "cubic, quintic or trapezoidal, from point to point.  [default: quintic]",
+               words(*PROFILES)),
+    ] = None  # fmt: skip
+    spline: Annotated[bool, typer.Option("--spline", help="Through the points without a stop, by a cubic spline.")] = (
+        False
+    )
+    blend: Annotated[
+        str | None,
+        option("--blend", "PART", "Past the points by parabolas that take this part of a piece, up to 1."),
+    ] = None
+    rate: Annotated[str | None, option("--rate", "HZ", "Rows a second, in place of --steps.")] = None
+
+    def read(self, robot: Robot, units: Units, way: str) -> Timing | None:
+        """How the path takes its time, None where nothing is said. Raises InputError."""
+        from robokin.inverse.trajectories import Timing, motion_limits
+
+        if not any(value for value in vars(self).values()):
+            return None
+        passing: Any = "spline" if self.spline else "blend" if self.blend is not None else "stop"
+        if self.spline and self.blend is not None:
+            raise InputError("--spline and --blend exclude each other, expected one of them")
+        if passing != "stop" and self.profile is not None:
+            raise InputError(f"--profile is of pieces with a stop at their ends, expected it without --{passing}")
+        if passing != "stop" and way != "joint":
+            raise InputError(f"--{passing} is of paths by joints, expected it without --{way}")
+        limits = motion_limits(
+            robot,
+            _joint_values(self.max_velocity, "--max-velocity", robot, units),
+            _joint_values(self.max_acceleration, "--max-acceleration", robot, units),
+        )
+        profile: Any = choose(self.profile, PROFILES, "--profile") or "quintic"
+        told = {"blend": blend} if (blend := _number(self.blend, "--blend", "a part above 0 and up to 1", 1.0)) else {}
+        duration = _number(self.duration, "--duration", "seconds above 0")
+        return Timing(limits, profile, duration, passing, rate=_number(self.rate, "--rate", "rows a second"), **told)
+
+
+def _number(text: str | None, option: str, what: str, most: float = 1e9) -> float | None:
+    """A positive number. Raises InputError."""
+    from robokin.cli.arguments import split_vector
+
+    if text is None:
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value <= most or len(split_vector(text)) != 1:
+        raise InputError(f"{option}: found '{shown(text)}', expected {what}")
+    return value
+
+
+def _joint_values(text: str | None, option: str, robot: Robot, units: Units) -> Array | None:
+    """Positive values (n,) [rad | m] of the joints, of which one may stand for all that turn, or all that slide."""
+    import numpy as np
+
+    from robokin.cli.arguments import parse_numbers, split_vector
+    from robokin.model.joint_units import joint_factors
+
+    if text is None:
+        return None
+    turns = [bool(turn) for turn in robot.revolute]
+    if len(split_vector(text)) == 1:
+        if len({*turns}) > 1:
+            raise InputError(f"{option}: found one value for joints that turn and slide, expected {robot.n} values")
+        values = np.full(robot.n, parse_numbers(text, option, turns[:1], units, "a value")[0])
+    else:
+        values = parse_numbers(text, option, turns, units, "a value for each joint")
+    if not (values > 0.0).all():
+        raise InputError(f"{option}: found '{shown(text)}', expected values above 0")
+    return np.asarray(values * joint_factors(robot, units))

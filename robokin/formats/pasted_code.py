@@ -1,0 +1,182 @@
+"""A Denavit-Hartenberg table that a program holds: links of a toolbox, matrices, lists of lists, a list a column."""
+
+from __future__ import annotations
+
+import re
+
+from robokin.errors import InputError
+from robokin.formats.pasted_headings import TABLE, heading_of
+from robokin.formats.pasted_row import PastedRow
+
+LINK = re.compile(r"\b(?:(Revolute|Prismatic)(M?)(?:DH)?|Link)\s*\(")
+LISTED = re.compile(r"\s*\[([^\[\]]{1,400})\]([^;\n]{0,80})")
+VECTOR = re.compile(r"(?<![\w.])([A-Za-z][\w.]{0,40})\s*=\s*(?:[\w.]{1,20}\()?['\"]?[\[(]([^\[\]=]{1,600})\]")
+MATRIX = re.compile(r"=\s*(?:[\w.]{1,40}\()?\s*[\[{]|^[ \t]*[\[{]\s{0,40}[\[{]", re.MULTILINE)
+GROUP = re.compile(r"[\[{]([^\[\]{}]{3,4000})[\]}]")
+COMMENT = re.compile(r"(?:%|#|//)(.*)")
+LINK_COLUMNS = ("theta", "d", "a", "alpha", "sigma", "offset")
+"""What `Link([…])` of the Robotics Toolbox takes, in order (P. Corke, Robotics, Vision and Control, chapter 7)."""
+
+MIN_NUMBERS = 4
+"""Numbers in a row of a matrix at least."""
+
+MAX_CALL = 2000
+"""Characters of the arguments of one link."""
+
+
+def code_rows(text: str) -> tuple[list[PastedRow], list[str]] | None:
+    """The rows of the table in a program, headings first where it has any, and the lines beside; None for no program.
+
+    Raises InputError for links that cannot be read.
+    """
+    lines = text.split("\n")
+    if sum("|" in line for line in lines) > 1 or "&" in text:
+        return None
+    bare = "\n".join(COMMENT.sub("", line) for line in lines)
+    for reader in (_links, _vectors, _matrix):
+        rows, beside = reader(bare, text)
+        if len(rows) > 1:
+            return rows, [*beside, *(line for line in lines if not GROUP.search(line) and not LINK.search(line))]
+    return None
+
+
+def _links(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
+    """The rows of links of a toolbox, such as `Link([0 0.4 0.025 pi/2])` and `RevoluteDH(d=0.4, a=0.025)`."""
+    rows, conventions = [], set()
+    for match in LINK.finditer(bare):
+        line, rest = _line(bare, match.start()), bare[match.end() : match.end() + MAX_CALL]
+        told, words = _listed(listed, line) if (listed := LISTED.match(rest)) else _arguments(rest)
+        if not told:
+            raise InputError(f"line {line}: found a link without numbers, expected its theta, d, a and alpha")
+        if told.get("flip", "False") not in ("False", "false", "0"):
+            raise InputError(f"line {line}: found a link with flip, expected links that turn the way of their axis")
+        slides = match[1] == "Prismatic" or "prismatic" in words or told.get("sigma", "0") == "1"
+        free = "d" if slides else "theta"  # whatever number stands there
+        told[free] = told[free] if re.search(r"[A-Za-z]", told.get(free, "").replace("pi", "")) else ""
+        rows.append(_row(line, told, "P" if slides else "R"))
+        said = "standard" if match[1] or "standard" in words else ""
+        conventions.add("modified" if match[2] or "modified" in words else said)
+    if "modified" in conventions and len(conventions) > 1:
+        raise InputError("found links in the modified convention and others, expected one convention")
+    return _with_headings(rows), [f"{name} convention" for name in sorted(conventions) if name]
+
+
+def _listed(match: re.Match[str], line: int) -> tuple[dict[str, str], set[str]]:
+    """What a link is given in a list, and the words behind it. Raises InputError."""
+    cells = _cells(match[1])
+    if not 4 <= len(cells) <= 6:
+        raise InputError(f"line {line}: found {len(cells)} numbers in a Link, expected theta, d, a, alpha")
+    return dict(zip(LINK_COLUMNS, cells, strict=False)), {"modified", "standard"} & {*re.findall(r"\w+", match[2])}
+
+
+def _row(line: int, told: dict[str, str], kind: str) -> PastedRow:
+    """A link as a row: its type, theta, d, a, alpha, offset and limits."""
+    limits = told.get("qlim", "")
+    if pair := re.fullmatch(r"[^\[]*\[\s*([^\[\],\s]+)[\s,]+([^\[\],\s]+)\s*\]\)?(\s*\*\s*(?:pi/180|deg))?", limits):
+        degrees = "°" if pair[3] else ""
+        limits = f"{pair[1]}{degrees} to {pair[2]}{degrees}"
+    return PastedRow(line, (kind, *(told.get(name, "") for name in ("theta", "d", "a", "alpha", "offset")), limits))
+
+
+def _with_headings(rows: list[PastedRow]) -> list[PastedRow]:
+    """Rows of links below their headings."""
+    return [PastedRow(rows[0].line, ("type", "theta", "d", "a", "alpha", "offset", "limits")), *rows] if rows else []
+
+
+def _arguments(text: str) -> tuple[dict[str, str], set[str]]:
+    """What a call is given by name, up to its closing parenthesis, and the words that stand alone."""
+    parts = _parted(text, ",")
+    told: dict[str, str] = {}
+    words: set[str] = set()
+    k = 0
+    while k < len(parts):
+        name, equals, value = parts[k].partition("=")
+        quoted = re.fullmatch(r"['\"](\w+)['\"]", parts[k])
+        if equals:
+            told[name.strip()] = _plain(value)
+        elif quoted and quoted[1] in (*LINK_COLUMNS, "qlim", "flip") and k + 1 < len(parts):
+            told[quoted[1]] = _plain(parts[k + 1])
+            k += 1
+        elif quoted:
+            words.add(quoted[1])
+        k += 1
+    return (told if {"d", "a", "alpha", "theta", "offset"} & {*told} else {}), words
+
+
+def _vectors(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
+    """The rows of `d = [0.4 0 0]` and its like: each list is a column."""
+    columns: dict[str, tuple[str, ...]] = {}
+    line = 1
+    for match in VECTOR.finditer(bare):
+        name = match[1].rpartition(".")[2]
+        if heading_of(name).meaning in ("theta", "d", "a", "alpha", "offset") and ";" not in match[2]:
+            columns[name], line = _cells(match[2]), _line(bare, match.start())
+    sizes = {len(cells) for cells in columns.values()}
+    if len({heading_of(name).meaning for name in columns} & {*TABLE}) < 3 or len(sizes) != 1:
+        return [], []
+    return [
+        PastedRow(line, (*columns,)),
+        *(PastedRow(line, cells) for cells in zip(*columns.values(), strict=True)),
+    ], []
+
+
+def _matrix(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
+    """The rows of a matrix or of a list of lists, below the headings that a comment beside it has."""
+    if not MATRIX.search(bare):
+        return [], []
+    rows = []
+    for match in GROUP.finditer(bare):
+        at = match.start(1)
+        for part in re.split(r"([;\n])", match[1]):
+            cells = _cells(part.strip().strip(","))
+            if len(cells) > 1:
+                rows.append(PastedRow(_line(bare, at + len(part) - len(part.lstrip())), cells))
+            at += len(part)
+    width = max((len(row.cells) for row in rows), default=0)
+    if sum(len(row.cells) >= MIN_NUMBERS for row in rows) < 2:
+        return [], []
+    for row in rows:
+        if len(row.cells) != width:
+            raise InputError(f"line {row.line}: found {len(row.cells)} numbers, expected {width} as in other rows")
+    for number, line in enumerate(text.split("\n"), start=1):
+        if comment := COMMENT.search(line):
+            body = re.sub(r"^[^\[]*\[|[\];].*$", "", comment[1]).strip(" ;.")
+            cells = tuple(cell.strip() for cell in body.split(",")) if "," in body else tuple(body.split())
+            if len(cells) == width and len({heading_of(cell).meaning for cell in cells} & {*TABLE}) > 2:
+                return [PastedRow(number, cells), *rows], []
+    return rows, []
+
+
+def _line(text: str, at: int) -> int:
+    return text.count("\n", 0, at) + 1
+
+
+def _parted(text: str, separator: str) -> list[str]:
+    """The parts of a text between separators outside brackets, up to a bracket that closes what is not open."""
+    depth, start, parts = 0, 0, []
+    for k, letter in enumerate(text):
+        depth += (letter in "([{") - (letter in ")]}")
+        if depth < 0:
+            text = text[:k]
+            break
+        if letter == separator and not depth:
+            parts.append(text[start:k].strip())
+            start = k + 1
+    return [*parts, text[start:].strip()]
+
+
+def _cells(text: str) -> tuple[str, ...]:
+    """The numbers and expressions in a row of a program: between commas, or between blanks."""
+    text = _plain(text)
+    if "," in text:
+        return (*_parted(text, ","),)
+    text = re.sub(r"\s*([*/])\s*", r"\1", re.sub(r"(?<=\S)\s+([-+])\s+(?=\S)", r"\1", text))
+    return tuple(text.split())
+
+
+def _plain(text: str) -> str:
+    """An expression of a program without what only its language needs."""
+    text = re.sub(r"\((?:float|double)\)|\.\.\.", " ", text)
+    text = re.sub(r"(?<=[\d.])[fF]\b", "", text)
+    text = re.sub(r"\b(?:[\w.]{1,20}\.)?(?:rad|radians|deg2rad)\(\s*(-?[\d.]{1,20})\s*\)", r"\1°", text)
+    return text.strip().strip("'\"")

@@ -1,0 +1,310 @@
+"""Paths in time: joints through points, and lines of the tool, within limits of velocity and acceleration.
+
+Statement. Give a path's rows at even times, with the joints' velocities and accelerations there.
+Derivation. Joints through points move as `time_profiles` has it, in closed form. On a line of the tool, at the part
+σ(t/T) of the way, the joints' velocity is q' σ'/T and their acceleration (q'' σ'² + q' σ'')/T²; q' solves J q' = x',
+the twist of the line, with the least motion, and q'' is its derivative along the line, by a difference between both
+sides. What limits ask for is the least T that keeps to them at every row.
+Where a joint is to spare its part of both is read off the rows, by differences.
+Degenerate case. At a singular configuration of a line q' has no bound: with limits there is no duration then.
+Source of the polynomials: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 4.2.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robokin.arrays import Array
+from robokin.errors import InputError
+from robokin.expected import expect_choice, expect_finite, expect_flag, expect_number, expect_numbers, expect_whole
+from robokin.inverse.follow import MOST
+from robokin.inverse.joint_paths import Event, Path, PathTask, follow_curve, line_task, singularities
+from robokin.inverse.time_profiles import BLEND, MotionLimits, Passing, Profile, timed_move
+from robokin.inverse.timed_curves import TimedCurve
+from robokin.inverse.tool_curves import ToolCurve
+from robokin.kinematics.forward import forward_kinematics
+from robokin.kinematics.jacobian import jacobian
+from robokin.kinematics.velocity import differential_kinematics
+from robokin.model import CoupledRobot, Robot, expect_robot
+
+PROFILES = ("cubic", "quintic", "trapezoidal")
+PASSINGS = ("stop", "spline", "blend")
+
+LONGEST = 1e9
+"""The longest duration [s]: thirty years."""
+
+CLOSES = 1e-6
+"""How far J q' may be off the twist, relatively: beyond that the configuration is singular."""
+
+DIFFERENCE = 1e-5
+"""The step along a line, as a part of it, between whose sides q'' is the difference of q'."""
+
+
+def trajectory(
+    robot: Robot,
+    points: ArrayLike,
+    *,
+    duration: float | None = None,
+    profile: Profile = "quintic",
+    max_velocity: ArrayLike | None = None,
+    max_acceleration: ArrayLike | None = None,
+    passing: Passing = "stop",
+    blend: float = BLEND,
+    steps: int = 100,
+    rate: float | None = None,
+    limits: bool = True,
+) -> Path:
+    """All joints together through points, in time.
+
+    points: (k, n) [rad | m], k of 2 and more; duration [s]; max_velocity, max_acceleration: (n,) or one for all joints
+    [rad | m] in a second and a second squared. Without a duration it is the least that they allow, and a second where
+    there are none.
+    profile: from point to point, with a stop at each; passing: "spline" goes through the points without a stop (a cubic
+    spline, at rest at both ends), "blend" along straight pieces, past the points by parabolas that take the part
+    `blend` (to 1) of the shorter piece's time. Rows: steps + 1 at even times, or `rate` [1/s] and the end.
+    With `limits` the path ends before a joint leaves them. Raises InputError for other shapes and values, and for a
+    duration that is too short for the limits.
+    Sources: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 4.2; J. J. Craig,
+    Introduction to Robotics, 3rd edition, section 7.3.
+    """
+    robot = expect_robot(robot)
+    what = f"two rows or more of {robot.n} finite joint values"
+    way = expect_finite(points, "points", what)
+    if way.ndim != 2 or len(way) < 2 or way.shape[1] != robot.n:
+        raise InputError(f"points: found an array of shape {way.shape}, expected {what}")
+    if not robot.n:
+        raise InputError(f"{robot.name} has no joints, expected a robot that can move")
+    chosen = cast(Profile, expect_choice(profile, PROFILES, "profile"))
+    past = cast(Passing, expect_choice(passing, PASSINGS, "passing"))
+    part = expect_number(blend, "blend", "a part from 0 to 1")
+    if not 0.0 < part <= 1.0:
+        raise InputError(f"blend: found {part:g}, expected a part of the pieces above 0 and up to 1")
+    bounds = motion_limits(robot, max_velocity, max_acceleration)
+    curve = timed_move(way, chosen, bounds, _duration(duration), past, part)
+    t = row_times(curve.duration, steps, rate)
+    count = len(t) - 1
+    fraction, event = 1.0, None
+    if expect_flag(limits, "limits") and (left := _leaves(robot, curve)) is not None:
+        at, joint, value, words = left
+        fraction = at / curve.duration
+        event = Event("limit", fraction, words, joint, value)
+        t = t[t <= at]
+        t = t if len(t) else np.zeros(1)
+    q, velocity, acceleration = curve.at(t)
+    if len(q) and fraction == 1.0:
+        q[-1] = way[-1]  # to the last digit
+    return _with_rows(robot, t, curve.duration, (q, velocity, acceleration), fraction, event, count)
+
+
+@dataclass(frozen=True, eq=False)
+class Timing:
+    """How a path takes its time: see `trajectory`."""
+
+    limits: MotionLimits
+    profile: Profile = "quintic"
+    duration: float | None = None
+    passing: Passing = "stop"
+    blend: float = BLEND
+    rate: float | None = None
+
+
+def timed_curve(
+    robot: Robot, first: Array, curve: ToolCurve, timing: Timing, steps: int, limits: bool, task: PathTask | None
+) -> Path:
+    """The tool along a curve from where it is at joint values first (n,), in time: see `follow_curve`, `timed_line`."""
+    chosen = line_task(robot) if task is None else task
+    tau = row_times(1.0, steps, None)
+    path = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
+    path = timed_line(path, curve, timing.profile, timing.limits, timing.duration, chosen)
+    if timing.rate is None:
+        return path
+    assert path.duration is not None
+    tau = row_times(path.duration, steps, timing.rate) / path.duration
+    tau[-1] = 1.0
+    again = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
+    free = motion_limits(robot, None, None)
+    return timed_line(again, curve, timing.profile, free, path.duration, chosen)
+
+
+def joined(paths: Sequence[Path]) -> Path:
+    """Paths one after the other as one, each the same part of the way; the last need not be followed to its end."""
+    if len(paths) == 1:
+        return paths[0]
+    times, parts, events, start = [], [], [], 0.0
+    for k, path in enumerate(paths):
+        times.append(start + path.t)
+        parts.append((k + path.s) / len(paths))
+        events += [replace(event, fraction=(k + event.fraction) / len(paths)) for event in path.events]
+        start += path.duration or 1.0
+    timed = all(path.duration is not None for path in paths)
+    last = paths[-1]
+
+    def rows(values: Iterable[Array | None]) -> Array:
+        """The rows of all paths, each without its first, which is the last one's end."""
+        return np.concatenate([np.asarray(one)[1 if k else 0 :] for k, one in enumerate(values)])
+
+    return replace(
+        last,
+        t=rows(times) if timed else rows(times) / len(paths),
+        s=rows(parts),
+        q=rows(path.q for path in paths),
+        T=rows(path.T for path in paths),
+        fraction=(len(paths) - 1 + last.fraction) / len(paths),
+        events=tuple(events),
+        manipulability=rows(path.manipulability for path in paths),
+        steps=sum(path.steps for path in paths),
+        duration=start if timed else None,
+        velocity=rows(path.velocity for path in paths) if timed else None,
+        acceleration=rows(path.acceleration for path in paths) if timed else None,
+    )
+
+
+def timed_line(
+    path: Path,
+    curve: ToolCurve,
+    profile: Profile,
+    limits: MotionLimits,
+    duration: float | None,
+    task: PathTask,
+) -> Path:
+    """A path of the tool, whose rows are at the profile's parts of the way, in time: in the least that limits allow.
+
+    Raises InputError for a duration that is too short for them, and where a singular configuration lets none be enough.
+    """
+    tau = path.t
+    q1, q2 = _derivatives(path, curve, task)
+    _, s1, s2 = unit_law(profile, tau)
+    with np.errstate(invalid="ignore", over="ignore"):
+        speed = q1 * s1[:, None]
+        push = q2 * s1[:, None] ** 2 + q1 * s2[:, None]
+    if not (np.all(np.isfinite(speed)) and np.all(np.isfinite(push))):
+        raise InputError("a joint's velocity has no bound where the path is singular, expected a path beside that")
+    if len(tau) > 2 and (spare := _spare(path, task)) is not None:
+        # A joint is to spare: what it does from row to row the line does not say, and is read off the rows.
+        speed = speed + np.einsum("mij,mj->mi", spare, np.gradient(path.q, tau, axis=0, edge_order=2))
+        push = np.gradient(speed, tau, axis=0, edge_order=2)
+    least = max(
+        float(np.max(np.abs(speed) / limits.velocity, initial=0.0)),
+        math.sqrt(float(np.max(np.abs(push) / limits.acceleration, initial=0.0))),
+    )
+    if duration is not None and duration < least * (1.0 - 1e-9):
+        raise InputError(f"found a duration of {duration:g} s, expected at least {least:.6g} s within the limits")
+    whole = duration if duration is not None else least if least > 0.0 else 1.0
+    return replace(path, t=tau * whole, duration=whole, velocity=speed / whole, acceleration=push / whole**2)
+
+
+def unit_law(profile: Profile, tau: Array) -> tuple[Array, Array, Array]:
+    """σ, σ' and σ'' (m,) at parts tau (m,) of the time."""
+    free = MotionLimits(np.full(1, np.inf), np.full(1, np.inf))
+    s, velocity, acceleration = timed_move(np.array([[0.0], [1.0]]), profile, free, 1.0).at(tau)
+    return s[:, 0], velocity[:, 0], acceleration[:, 0]
+
+
+def motion_limits(robot: Robot, velocity: ArrayLike | None, acceleration: ArrayLike | None) -> MotionLimits:
+    """Limits (n,), or one for all joints [rad/s | m/s, per s²]; None for none. Raises InputError for none above 0."""
+    values = []
+    for name, given in (("max_velocity", velocity), ("max_acceleration", acceleration)):
+        what = f"a positive number, or {robot.n} of them"
+        array = np.full(robot.n, np.inf) if given is None else expect_numbers(given, name, what)
+        if array.shape not in ((), (robot.n,)) or not (array > 0.0).all():
+            raise InputError(f"{name}: found {np.array2string(array)}, expected {what}")
+        values.append(np.broadcast_to(array, (robot.n,)).copy())
+    return MotionLimits(*values)
+
+
+def _duration(duration: float | None) -> float | None:
+    if duration is None:
+        return None
+    value = expect_number(duration, "duration", "seconds")
+    if not 1.0 / LONGEST <= value <= LONGEST:
+        raise InputError(f"duration: found {value:g}, expected seconds above 0, from {1.0 / LONGEST:g} to {LONGEST:g}")
+    return value
+
+
+def row_times(duration: float, steps: int, rate: float | None) -> Array:
+    """Times (m,) [s] of rows: in even steps, or at a rate [1/s] and at the end. Raises InputError for too many."""
+    if rate is None:
+        steps = expect_whole(steps, "steps", 1, MOST)
+        return duration * (np.arange(steps + 1) / steps)
+    frequency = expect_number(rate, "rate", "rows a second")
+    if not frequency > 0.0 or duration * frequency > MOST:
+        raise InputError(f"rate: found {frequency:g}, expected rows a second above 0, and at most {MOST} rows")
+    count = math.floor(duration * frequency * (1.0 + 1e-12)) + 1
+    t = np.arange(count) / frequency
+    return t if t[-1] >= duration * (1.0 - 1e-9) else np.append(t, duration)
+
+
+def _leaves(robot: Robot, curve: TimedCurve) -> tuple[float, int | None, float, str] | None:
+    """When, by which joint (from 1), and at which value a curve first leaves the limits, and what leaves them."""
+    limits = robot.limits
+    names = [f"joint {k + 1}" for k in range(robot.n)]
+    if isinstance(robot, CoupledRobot):
+        offset = robot.drive.motions(np.zeros(robot.n))
+        more = curve.coefficients @ robot.drive.S.T
+        more[:, 0] += offset
+        curve = TimedCurve(curve.times, np.concatenate([curve.coefficients, more], axis=2))
+        limits = np.concatenate([limits, robot.drive.limits])
+        names += [f"the motion of joint {row.name}" for row in robot.free_motion.joints]
+    left = curve.leaves(limits)
+    if left is None:
+        return None
+    at, joint, value = left
+    if at == 0.0:
+        value = float(curve.at(np.zeros(1))[0][0, joint])
+    return at, joint + 1 if joint < robot.n else None, value, f"{names[joint]} leaves its limits"
+
+
+def _with_rows(
+    robot: Robot, t: Array, duration: float, rows: tuple[Array, Array, Array], fraction: float, event: Event | None,
+    steps: int,
+) -> Path:  # fmt: skip
+    """The path of rows q, velocities and accelerations (m, n) at times t (m,)."""
+    q, velocity, acceleration = rows
+    found = differential_kinematics(robot, q)
+    part = t / duration
+    events = singularities(robot, part, q, found.singular_values, None)
+    events += [event] if event is not None else []
+    T = forward_kinematics(robot, q)
+    return Path(
+        t, part, q, T, fraction, tuple(events), found.manipulability, steps, robot, "joint", duration, velocity,
+        acceleration,
+    )  # fmt: skip
+
+
+def _derivatives(path: Path, curve: ToolCurve, task: PathTask) -> tuple[Array, Array]:
+    """q' and q'' (m, n) by the part of the way, at each row; inf where the configuration is singular."""
+    robot, s, q = path.robot, path.s, path.q
+    first = _joint_rates(robot, q, curve.twist(s), task)
+    step = DIFFERENCE / np.maximum(1.0, np.max(np.abs(first), axis=1, keepdims=True))
+    step[~np.isfinite(step)] = DIFFERENCE
+    with np.errstate(invalid="ignore"):
+        moves = np.where(np.isfinite(first), step * first, 0.0)
+        ahead = _joint_rates(robot, q + moves, curve.twist(s + step[:, 0]), task)
+        behind = _joint_rates(robot, q - moves, curve.twist(s - step[:, 0]), task)
+        return first, (ahead - behind) / (2.0 * step)
+
+
+def _spare(path: Path, task: PathTask) -> Array | None:
+    """The projections (m, n, n) onto motions that leave the tool where it is; None where there is no such motion."""
+    J = jacobian(path.robot, path.q)[:, : 3 if task == "position" else 6]
+    rank = np.linalg.matrix_rank(J, tol=1e-6 * float(np.max(np.abs(J))))
+    if not (rank < path.robot.n).any():
+        return None
+    return np.asarray(np.eye(path.robot.n) - np.linalg.pinv(J, rcond=1e-10) @ J)
+
+
+def _joint_rates(robot: Robot, q: Array, twist: Array, task: PathTask) -> Array:
+    """The rates (m, n) of least motion with J rate = twist (m, 6) at q (m, n); inf where there are none."""
+    J = jacobian(robot, q)
+    if task == "position":
+        J, twist = J[:, :3], twist[:, :3]
+    rates: Array = np.einsum("mij,mj->mi", np.linalg.pinv(J, rcond=1e-10), twist)
+    off = np.max(np.abs(np.einsum("mij,mj->mi", J, rates) - twist), axis=1)
+    rates[off > CLOSES * np.maximum(1e-12, np.max(np.abs(twist), axis=1))] = np.inf
+    return rates

@@ -1,0 +1,317 @@
+"""Tables as others printed them, in pages, reports and programs: each becomes the robot that it prints."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+import robokin
+from robokin.errors import InputError
+from robokin.formats.first_description import of_table
+from robokin.formats.pasted_description import Wishes
+from robokin.formats.read import read_text
+
+PRINTED = Path(__file__).parent.parent / "data/pasted_tables"
+KR210 = "R 0 0.75 0 0; R -90 0 0.35 -90; R 0 0 1.25 0; R 0 1.5 -0.054 -90; R 0 0 0 90; R 0 0 0 -90; F 0 0.303 0 0"
+
+
+class Printed(NamedTuple):
+    """What a table prints: convention, unit of length, and rows of kind, theta, d, a, alpha, angles in degrees.
+
+    wishes: what is said beside it, for tables that leave it open; library: the robot of the library that it is.
+    """
+
+    source: str
+    convention: str
+    length: str
+    rows: str
+    wishes: dict | None = None
+    library: str = ""
+
+
+TABLES = {
+    "kr210": Printed("a report on Udacity's KUKA KR210 project, README", "modified", "m", KR210),
+    "kr210_names": Printed(
+        "another such report: its last row is the gripper, and slides not", "modified", "m",
+        "R 0 1 0 0; R -90 0 2 -90; R 0 0 3 0; R 0 5 4 -90; R 0 0 0 90; R 0 0 0 -90; F 0 6 0 0",
+        {"values": {"d1": "1", "a1": "2", "a2": "3", "a3": "4", "d4": "5", "d7": "6"}},
+    ),
+    "kr210_two_tables": Printed("another such report, with a table of positions before", "modified", "m", KR210),
+    "gen3_lite": Printed(
+        "Lgx521/EE368_Project, scripts/README.md", "modified", "mm",
+        "R 0 243.3 0 0; R 90 30 0 90; R 90 20 280 180; R 90 245 0 90; R 180 57 0 90; R 90 235 0 90",
+    ),
+    "openmanipulator": Printed(
+        "a MATLAB function GetDH of the OpenManipulator-X", "modified", "mm",
+        "R 0 77 0 0; R -90 0 0 -90; R 90 0 128 0; R 0 0 124 0; F 0 0 126 0", {"types": "RRRRF"},
+    ),
+    "kr5_links": Printed(
+        "P. Corke's mdl_KR5, in ros-industrial/kuka_experimental#130", "standard", "m",
+        "R 0 0.4 0.18 90; R 0 0.135 0.6 180; R 0 0.135 0.12 -90; R 0 0.62 0 90; R 0 0 0 -90; R 0 0 0 0",
+    ),
+    "baxter_links": Printed(
+        "a MATLAB script of Baxter's left arm, five of its joints", "standard", "m",
+        "R 0 0.27035 0.069 -90; R 90 0 0 90; R 0 0.36435 0.069 -90; R 0 0 0 90; R 0 0.37429 0.01 -90",
+    ),
+    "irb_matrix": Printed(
+        "a MATLAB script with its lengths before the matrix", "standard", "m",
+        "R 0 0.399 0 -90; R -90 0 0.35 0; R 0 0 0.042 -90; R 0 0.351 0 90; R 0 0 0 -90; R -180 0.082 0 0",
+    ),
+    "jaco_matrix": Printed(
+        "a MATLAB function getDH_rad, four of the Jaco's joints; the first turns the other way", "standard", "m",
+        "-R 0 0.2755 0 90; R -90 0 0.41 180; R 90 -0.0098 0 90; R 0 -0.2502 0 60",
+        {"columns": ("theta", "d", "a", "alpha")},
+    ),
+    "prismatic_matrix": Printed(
+        "GCarmo4/SRMan-Project, RobotX.m: d before theta, called v", "standard", "mm",
+        "P 0 0 0 -90; R 0 0 25 90; R -90 0 315 0; R 0 0 35 90; R 0 -365 0 -90; R 0 0 0 90; R 0 -80 0 0",
+        {"columns": ("d", "theta", "a", "alpha", "offset")},
+    ),
+    "mycobot_lists": Printed(
+        "elephantrobotics/pymycobot#7: theta, alpha, a, d", "standard", "m",
+        "R 0 0.13156 0 90; R 0 0 -0.1104 0; R 0 0 -0.096 0; R 0 0.06639 0 90; R 0 0.07318 0 -90; R 0 0.0436 0 0",
+        {"types": "RRRRRR"},
+    ),
+    "ar3_calls": Printed(
+        "petercorke/robotics-toolbox-python#199", "standard", "m",
+        "R 0 0.16977 0.0642 -90; R 0 0 0.305 0; R 0 0 0 90; R 0 -0.22263 0 -90; R 0 0 0 90; R 0 -0.03625 0 0",
+    ),
+    "m10ia_vectors": Printed(
+        "4rtur1t0/ARTE#7: a list for each column", "standard", "m",
+        "R 0 0.45 0.15 -90; R -90 0 0.6 0; R 0 0 0.2 -90; R 0 0.64 0 90; R 0 0 0 -90; R 180 0.1 0 0",
+    ),
+    "backticks": Printed(
+        "notes in Markdown, every cell as code", "standard", "m", "R 0 .35 0 90; R 0 0 .45 0; R 0 0 .3 0",
+    ),
+    "bcr": Printed(
+        "notes in Markdown, the lengths in a list before the table", "standard", "m",
+        "R 0 .2 0 90; R 0 0 .065 -90; R 0 .41 0 90; R 0 0 -.065 -90; R 0 .31 0 90; R 0 0 .06 -90; R 0 .105 0 0",
+    ),
+    "exam_rrp": Printed(
+        "an examination, its angles bold", "standard", "m", "R 0 1 0 -90; R 0 2 0 90; P 0 0 0 0",
+        {"values": {"h1": "1", "d2": "2"}},
+    ),
+    "exam_rpr": Printed(
+        "another one: the second joint slides", "standard", "m", "R 0 1 0 90; P 0 0 -2 -90; R 0 0 2 90",
+        {"values": {"l1": "1", "l2": "2"}},
+    ),
+    "mycobot_pro": Printed(
+        "a README of the myCobot Pro 600", "standard", "mm",
+        "R 0 219.34 0 90; R -90 0 -250 0; R 0 0 -250 0; R 90 -108 0 -90; R 0 109.1 0 90; R 0 -75.86 0 180",
+    ),
+    "values_in_cells": Printed(
+        "a README: `d_1 = 0.5` in a cell", "standard", "m", "R 0 .5 0 90; R 0 0 1 0; R 0 0 .8 0",
+    ),
+    "five_joints": Printed(
+        "a report in LaTeX, its rows `0 \\to 1`", "standard", "m",
+        "R 0 1 0 -90; R -90 0 2 180; R 0 0 3 180; R 90 0 0 90; R 0 9 0 0",
+        {"values": {"L1": "1", "L2": "2", "L3": "3", "L4": "4", "L5": "5"}},
+    ),
+    "one_line": Printed(
+        "LaTeX in one line", "standard", "m", "R 0 1 0 90; R 0 0 2 0; R 0 0 3 0; R 0 4 0 -90",
+        {"values": {"d1": "1", "a2": "2", "a3": "3", "d4": "4"}},
+    ),
+    "theta_zero": Printed(
+        "notes in Markdown: theta_zero is an offset", "modified", "m",
+        "R 0 .33 0 0; R -90 0 .04 -90; R 0 0 .445 0; R 0 .44 .04 -90; R 0 0 0 90; R 0 .08 0 -90",
+    ),
+    "ur5e": Printed(
+        "Universal Robots, DH Parameters for calculations of kinematics and dynamics", "standard", "m",
+        "R 0 .1625 0 90; R 0 0 -.425 0; R 0 0 -.3922 0; R 0 .1333 0 90; R 0 .0997 0 -90; R 0 .0996 0 0",
+        {"types": "RRRRRR"}, "ur5e",
+    ),
+    "mycobot_pi": Printed(
+        "takeshiD/urdf2dh, README", "standard", "mm",
+        "R 0 131.56 0 0; R -90 0 0 90; R 0 0 -110.4 0; R -90 66.39 -96 0; R 90 73.18 0 90; R 0 43.6 0 -90",
+    ),
+    "arctan": Printed(
+        "a student's report: the angle is phi, with an arctangent", "modified", "m",
+        "R 180 3 0 0; R 126.86989764584402 0 0 90; R 53.13010235415598 0 5 0",
+        {"values": {"L0": "1", "L1": "2", "L2": "4", "L3": "3"}},
+    ),
+    "franka": Printed(
+        "Franka's documentation, its modified convention said beside", "modified", "m",
+        "R 0 .333 0 0; R 0 0 0 -90; R 0 .316 0 90; R 0 0 .0825 90; R 0 .384 -.0825 -90; R 0 0 0 90; R 0 0 .088 90; "
+        "F 0 .107 0 0", {"convention": "modified"}, "panda",
+    ),
+    "commented_latex": Printed(
+        "LaTeX in the comments of a program", "modified", "mm",
+        "R 0 131.56 0 90; R 0 0 -110.4 0; R 0 0 -96 0; R 0 66.39 0 90; R 0 73.18 0 -90; R 0 0 0 0",
+    ),
+    "mixed_links": Printed(
+        "a MATLAB script with links in both forms", "standard", "m",
+        "R 0 1 0 90; R 0 1 0 -90; P 0 1 0 90; R 0 0 0 -90; R 0 1 0 0",
+    ),
+}  # fmt: skip
+
+
+def pose(convention, scale, rows, q):
+    """The last frame (4, 4) of rows as `Printed` has them, multiplied out."""
+    T, values = np.eye(4), iter(q)
+    for kind, *cells in rows:
+        theta, d, a, alpha = (float(cell) for cell in cells)
+        theta, d, a, alpha = math.radians(theta), d * scale, a * scale, math.radians(alpha)
+        theta += {"R": 1, "-R": -1}[kind] * next(values) if kind.endswith("R") else 0.0
+        d += next(values) if kind == "P" else 0.0
+        c, s, ca, sa = math.cos(theta), math.sin(theta), math.cos(alpha), math.sin(alpha)
+        z = np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, d], [0, 0, 0, 1]])
+        x = np.array([[1, 0, 0, a], [0, ca, -sa, 0], [0, sa, ca, 0], [0, 0, 0, 1]])
+        T = T @ (z @ x if convention == "standard" else x @ z)
+    return T
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_printed_table_is_its_robot(name):
+    printed = TABLES[name]
+    rows = [row.split() for row in printed.rows.split(";")]
+    made = of_table((PRINTED / f"{name}.txt").read_text(encoding="utf-8"), Wishes(name, **(printed.wishes or {})))
+    assert made.types == "".join(row[0][-1] for row in rows)
+    assert (made.convention, made.units.length, made.missing) == (printed.convention, printed.length, ())
+    robot = read_text(made.text)
+    scale = {"m": 1.0, "mm": 1e-3}[printed.length]
+    for q in np.random.default_rng(7).uniform(-2.0, 2.0, (5, robot.n)):
+        T = robokin.forward_kinematics(robot, q)
+        assert np.abs(T - pose(printed.convention, scale, rows, q)).max() < 2e-5  # -1.5708 is a rounded right angle
+        if printed.library:
+            library = robokin.forward_kinematics(robokin.load(printed.library), q)
+            assert np.allclose(library[:3, 3], T[:3, 3], atol=1e-9)
+
+
+def test_every_table_is_read_and_has_a_source():
+    assert {path.stem for path in PRINTED.glob("*.txt")} == {*TABLES}
+    assert all(printed.source for printed in TABLES.values())
+
+
+HEADS = "i\tθ\td\ta\tα\n"
+FIRST = HEADS + "1\tθ1\t0\t0.1\t90°\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (
+            FIRST + "2\tθ1\t0\t0.1\t0\n",
+            "line 3: found theta1 after theta1, expected the rows from the base to the tool",
+        ),
+        (FIRST + "3\tθ3\t0\t1\t0\n2\tθ2\t0\t1\t0\n", "line 4: found theta2 after theta3"),
+        (FIRST + "2\tθ2 - θ1\t0\t1\t0\n", "line 3: found theta1, the variable of line 2"),
+        (FIRST + "2\tθ2\t0.3\t\n3\tθ3\t0\t1\t0\tx\n", "line 4: found 6 cells, expected 5"),
+        ("i,theta,d,a,alpha\n1,q1,0,0.1,90°\n2,q2,0,0.1\n3,q3,0,0,1,9°\n", "line 3: found 4 cells, expected 5"),
+        (FIRST + "\n" + FIRST, r"found 2 tables \(lines 1 and 4\)"),
+        (FIRST + "2\t0\t0\t1\t0\n3\t0\t0\t1\t0\n", "found no variable in 2 of 3 rows"),
+        (FIRST + "2\tθ2 (90)\t0\t1\t0\n", r"line 3: found 'θ2 \(90\)', expected theta2 alone"),
+        (FIRST + "2\tθ2 = 90\t0\t1\t0\n", "line 3: found 'θ2 = 90', expected the joint's variable"),
+        (FIRST + "2\tθ2\t0.1²\t1\t0\n", "line 3: found '0.1²', expected it without the mark of a footnote"),
+        (FIRST + "2\tθ2\t1 050\t1\t0\n", "line 3: '1 050' in d: found '050'"),
+        (FIRST + "2\tθ2\tL1 L2\tL3\t0\n", "line 3: 'L1 L2' in d"),
+        ("i\tθ [rad]\td\ta\tα [deg]\n1\tq1 + 1.57\t0\t1\t90\n", "found angles in deg and in rad"),
+        ("i\tθ\td\ta\tα\n1\tq1\t0\t1\tπ/2\n2\tq2\t0\t1\t90\n", "found angles with pi, and such as 90"),
+        ("i\tθ\td\ta\tα\tlimits\n1\tq1\t0\t1\t1.5708\t±170\n", "found angles such as 170 and 1.5708"),
+        (FIRST + "2\tθ2*\t0\t1\t0\n", "line 2: found theta1 without a star"),
+        ("i\tω\td\ta\tα\n1\tθ1 - 90°\t0\t1\t90°\n", "found joints' variables in the column 'ω'"),
+        ("i\tθ\td\ta_{i-1}\tα_i\n1\tθ1\t0\t1\t90°\n", "found a and alpha of different links"),
+        ("dh = [[q1, 0, 0.1, 0],\n [q2, 0, 0.1],\n [q3, 0, 0.1, 0]]", "line 2: found 3 numbers, expected 4"),
+        ("dh = [q1 0 0.1 0; q2 0 0.1; q3 0 0.1 0];", "line 1: found 3 numbers, expected 4"),
+        ("L(1) = Link([0 1 0 0]);\nL(2) = Link([0 1 0]);\n", "line 2: found 3 numbers in a Link"),
+        ("L(1) = Link([0 1 0 0]);\nL(2) = Link();\n", "line 2: found a link without numbers"),
+        ("a = RevoluteDH(d=1)\nb = RevoluteMDH(d=1)\n", "found links in the modified convention and others"),
+        ("a = RevoluteDH(d=1)\nb = RevoluteDH(d=1, flip=True)\n", "line 2: found a link with flip"),
+        ("d = [1, 2];\n", "found no table"),
+        (HEADS + "1\tθ1\t0\t" + "1" * 5000 + "\t90°\n", "line 2: found a cell of 5000 characters"),
+    ],
+)
+def test_a_row_is_lost_or_guessed_by_no_slip(text, sentence):
+    with pytest.raises(InputError, match=sentence):
+        of_table(text, Wishes())
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_a_row_that_lost_a_separator_is_no_row_less(seed):
+    rng = np.random.default_rng(seed)
+    name = [*TABLES][seed % len(TABLES)]
+    lines = (PRINTED / f"{name}.txt").read_text(encoding="utf-8").split("\n")
+    places = [(k, at) for k, line in enumerate(lines) for at, letter in enumerate(line) if letter in "|\t,;&"]
+    if not places:
+        return
+    k, at = places[rng.integers(len(places))]
+    lines[k] = lines[k][:at] + " " + lines[k][at + 1 :]
+    try:
+        made = of_table("\n".join(lines), Wishes("arm", **(TABLES[name].wishes or {})))
+    except InputError:
+        return
+    assert len(made.types) == TABLES[name].rows.count(";") + 1, lines[k]
+
+
+@pytest.mark.parametrize(("given", "sentence"), [({"length": "mm"}, "--length mm"), ({"angle": "rad"}, "--angle rad")])
+def test_a_unit_against_that_of_the_table_is_refused(given, sentence):
+    with pytest.raises(InputError, match=sentence):
+        of_table("i\tθ\td [m]\ta [m]\tα [deg]\n1\tθ1\t0\t1\t90\n", Wishes("arm", **given))
+
+
+def test_what_stands_beside_a_table():
+    assert of_table(FIRST + "The arm at θ1 = 30°", Wishes()).types == "R"  # a pose, no constant
+    twice = of_table(FIRST.replace("0.1", "L1") + "L1 = 0.3\nL1 = 0.5\n", Wishes())
+    assert twice.missing == ("L1",)
+    assert of_table("Last modified on May 2\n" + FIRST, Wishes()).convention == "standard"
+    for beside in (
+        "L1 = 0.3 + 0.1",
+        "L1, L2 = 0.3, 0.1",
+        "L2, L1 = 0.3, 0.1",
+        "L1 = 1,5",
+        "L1 = 0.3 * 2",
+        "L1 = 300-400",
+    ):
+        assert of_table(FIRST.replace("0.1", "L1") + beside + "\n", Wishes()).missing == ("L1",)
+    told = of_table("Modified DH parameters\n" + FIRST, Wishes())
+    assert told.convention == "modified" and "convention: modified, as the text says" in told.notes
+
+
+def test_a_column_of_variables_says_which_they_are():
+    """R. P. Paul, Robot Manipulators, table 2.2: of the Stanford arm's d2 and d3 one is a variable."""
+    text = "Link\tVariable\tα\ta\td\n1\tθ1\t-90°\t0\t0\n2\tθ2\t90°\t0\td2\n3\td3\t0°\t0\td3\n"
+    made = of_table(text, Wishes())
+    assert (made.types, made.missing) == ("RRP", ("d2",))
+
+
+def test_limits_of_a_program():
+    text = "Revolute('d', 1, 'qlim', [-170 170]*pi/180)\nRevoluteDH(d=1, alpha=pi/2, qlim=np.array([-1, 2]))\n"
+    made = of_table(text.replace("[-1, 2]", "[-pi, pi/2]"), Wishes())
+    assert np.degrees(read_text(made.text).limits).tolist() == pytest.approx(np.array([[-170, 170], [-180, 90]]))
+    with pytest.raises(InputError, match="found the limits"):
+        of_table(text.replace("pi/180", "2"), Wishes())
+
+
+def test_a_matrix_may_break_its_rows_where_it_likes():
+    for text in ("m = [q1 0 0.1 0\n q2 0 0.2 0;\n q3 0 0.3 0];", "m = [[q1,0,0.1,0], [q2,0,0.2,0],\n\n[q3,0,0.3,0]]"):
+        assert of_table("% theta d a alpha\n" + text, Wishes()).types == "RRR"
+
+
+def test_a_heading_of_the_next_link_makes_it_modified():
+    text = (
+        "i & $a_i$ & $\\alpha_i$ & $d_{i+1}$ & $\\theta_{i+1}$ \\\\ 0 & 0 & 0 & 0 & $\\theta_1$ \\\\ "
+        "1 & 2 & $90^\\circ$ & 0 & $\\theta_2$ \\\\"
+    )
+    assert of_table(text, Wishes()).convention == "modified"
+
+
+@pytest.mark.parametrize(
+    "spoilt", ["a: b # c", "[x", "{y", '"', "'", "- z", "\x1b[31m", "\u202eq", "&a", "*b", "!t", "%"]
+)
+def test_nothing_of_a_table_steers_its_description_or_a_terminal(spoilt):
+    rows = f"{spoilt} one\tq1\t0\t0.1\t90°\t{spoilt}\n{spoilt} two\tq2\t0\t0.1\t0\t{spoilt}\n"
+    text = f"joint\tθ\td\ta\tα\tx{spoilt}\n{rows}{spoilt}\n"
+    made = of_table(text, Wishes(spoilt))
+    assert made.types == "RR" and len(read_text(made.text).rows) == 2
+    assert all(note.isprintable() for note in made.notes) and made.text.replace("\n", "").isprintable()
+    with pytest.raises(InputError) as told:
+        of_table(FIRST + f"2\tθ2\t\x1b{spoilt}\t0\t0\n", Wishes())
+    assert str(told.value).isprintable()
+
+
+def test_a_value_is_an_expression():
+    with pytest.raises(InputError, match="--set L1: "):
+        of_table(FIRST.replace("0.1", "L1"), Wishes("arm", values={"L1": "3\n  evil: 4"}))

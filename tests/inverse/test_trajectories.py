@@ -1,0 +1,307 @@
+"""Paths in time: known values, and the laws: velocities are derivatives, limits hold and one is met, points are
+passed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import robokin
+from robokin.errors import InputError
+from robokin.inverse.joint_paths import follow_curve
+from robokin.inverse.paths_to_poses import Goal, Manner, path_through
+from robokin.inverse.time_profiles import MotionLimits, timed_move
+from robokin.inverse.timed_curves import TimedCurve
+from robokin.inverse.tool_curves import CircularArc
+from robokin.inverse.trajectories import Timing, joined, motion_limits, trajectory, unit_law
+
+FREE = MotionLimits(np.full(3, np.inf), np.full(3, np.inf))
+PROFILES = ("cubic", "quintic", "trapezoidal")
+PASSINGS = ("stop", "spline", "blend")
+PUMA = robokin.load("puma560")
+UR = robokin.load("ur5e")
+PLANAR = robokin.load("planar2r")
+
+
+def one(profile, duration, first, last, t):
+    free = MotionLimits(np.full(1, np.inf), np.full(1, np.inf))
+    curve = timed_move(np.array([[first], [last]]), profile, free, duration)
+    return [part[:, 0] for part in curve.at(np.asarray(t, dtype=float))]
+
+
+def test_craigs_cubic():
+    """J. J. Craig, Introduction to Robotics, 3rd ed., example 7.1: 15° to 75° in 3 s, θ = 15 + 20 t² - 4.44 t³."""
+    t = np.linspace(0.0, 3.0, 7)
+    q, velocity, acceleration = one("cubic", 3.0, 15.0, 75.0, t)
+    np.testing.assert_allclose(q, 15.0 + 20.0 * t**2 - 40.0 / 9.0 * t**3, atol=1e-12)
+    np.testing.assert_allclose(velocity, 40.0 * t - 40.0 / 3.0 * t**2, atol=1e-12)
+    np.testing.assert_allclose(acceleration, 40.0 - 80.0 / 3.0 * t, atol=1e-12)
+
+
+def test_the_quintic_of_jtraj():
+    """P. Corke, Robotics Toolbox, jtraj: q = A t⁵ + B t⁴ + C t³ + F with A = 6 Δ, B = -15 Δ, C = 10 Δ."""
+    t = np.linspace(0.0, 1.0, 11)
+    q, velocity, acceleration = one("quintic", 1.0, 1.0, 2.0, t)
+    np.testing.assert_allclose(q, 1.0 + 6 * t**5 - 15 * t**4 + 10 * t**3, atol=1e-14)
+    np.testing.assert_allclose(velocity, 30 * t**4 - 60 * t**3 + 30 * t**2, atol=1e-13)
+    np.testing.assert_allclose(acceleration, 120 * t**3 - 180 * t**2 + 60 * t, atol=1e-12)
+    # Its tests say: halfway at half the time with 1.875 times the mean velocity, and no acceleration there.
+    assert (q[5], velocity[5], abs(acceleration[5]) < 1e-12) == (1.5, 1.875, True)
+
+
+def test_the_trapezoid_of_the_toolbox():
+    """P. Corke, Robotics Toolbox, trapezoidal(0, 1, t): without a velocity it cruises at 1.5 times the mean one."""
+    t = np.linspace(0.0, 1.0, 13)
+    q, velocity, acceleration = one("trapezoidal", 1.0, 0.0, 1.0, t)
+    V, blend = 1.5, 1.0 / 3.0
+    a = V / blend
+    expected = np.where(
+        t <= blend, a / 2 * t**2, np.where(t <= 1 - blend, (1 - V) / 2 + V * t, 1 - a / 2 * (1 - t) ** 2)
+    )
+    np.testing.assert_allclose(q, expected, atol=1e-14)
+    assert velocity[6] == pytest.approx(1.5) and acceleration[0] == pytest.approx(4.5)
+
+
+def test_a_trapezoid_at_its_limits():
+    """B. Siciliano et al., 2009, section 4.2.1: with velocity v and acceleration a it takes Δ/v + v/a, or 2 √(Δ/a)."""
+    limits = MotionLimits(np.array([2.0]), np.array([4.0]))
+    assert timed_move(np.array([[0.0], [5.0]]), "trapezoidal", limits, None).duration == pytest.approx(5 / 2 + 2 / 4)
+    assert timed_move(np.array([[0.0], [0.25]]), "trapezoidal", limits, None).duration == pytest.approx(
+        2 * math.sqrt(0.25 / 4)
+    )
+    assert timed_move(np.array([[0.0], [1.0]]), "trapezoidal", limits, None).duration == pytest.approx(1.0)
+
+
+def test_a_spline_is_the_one_of_three_points():
+    """At rest at both ends, two pieces of one second: the velocity between is 3 (q2 - q0) / 4."""
+    curve = timed_move(
+        np.array([[0.0], [1.0], [2.0]]), "quintic", MotionLimits(*np.full((2, 1), np.inf)), 2.0, "spline"
+    )
+    q, velocity, acceleration = curve.at(np.array([0.0, 1.0, 2.0]))
+    assert q[:, 0] == pytest.approx([0, 1, 2]) and velocity[:, 0] == pytest.approx([0, 1.5, 0])
+    before, after = curve.at(np.array([1.0 - 1e-9]))[2], acceleration[1]
+    assert before[0] == pytest.approx(after, abs=1e-7)
+
+
+@pytest.mark.parametrize("passing", PASSINGS)
+@pytest.mark.parametrize("profile", PROFILES)
+@pytest.mark.parametrize("seed", range(12))
+def test_the_laws_of_a_move(profile, passing, seed):
+    rng = np.random.default_rng(seed)
+    points = rng.uniform(-2, 2, (rng.integers(2, 7), 3))
+    if seed % 3 == 0:
+        points = np.round(points)  # joints that stand still, points that repeat
+    limits = MotionLimits(rng.uniform(0.5, 3, 3), rng.uniform(0.5, 9, 3))
+    if np.array_equal(points.min(axis=0), points.max(axis=0)):
+        points[-1] += 1.0
+    curve = timed_move(points, profile, limits, None, passing)
+    t = np.linspace(0.0, curve.duration, 20_001)
+    q, velocity, acceleration = curve.at(t)
+    np.testing.assert_allclose(q[[0, -1]], points[[0, -1]], atol=1e-9)
+    assert np.abs(velocity[[0, -1]]).max() < 1e-9
+    # Limits hold, and one is met: it is the least duration.
+    fastest, hardest = curve.greatest()
+    assert (np.abs(velocity) <= limits.velocity * (1 + 1e-9)).all() and (np.abs(velocity) <= fastest * (1 + 1e-9)).all()
+    assert (np.abs(acceleration) <= limits.acceleration * (1 + 1e-9)).all()
+    assert max((fastest / limits.velocity).max(), (hardest / limits.acceleration).max()) == pytest.approx(1.0)
+    # Velocities are the derivatives of values.
+    step = t[1]
+    np.testing.assert_allclose((q[2:] - q[:-2]) / (2 * step), velocity[1:-1], atol=3 * step * limits.acceleration.max())
+    if passing != "blend":
+        for point in points:
+            assert np.abs(q - point).max(axis=1).min() < 2 * step * limits.velocity.max()
+    # Twice the time: half the velocity, a quarter of the acceleration.
+    slow = timed_move(points, profile, limits, 2 * curve.duration, passing)
+    np.testing.assert_allclose(slow.greatest()[0] * 2, fastest, rtol=1e-9)
+    np.testing.assert_allclose(slow.greatest()[1] * 4, hardest, rtol=1e-9)
+    with pytest.raises(InputError, match="expected at least"):
+        timed_move(points, profile, limits, curve.duration * 0.99, passing)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_where_limits_are_left(seed):
+    rng = np.random.default_rng(seed)
+    points = rng.uniform(-1, 1, (rng.integers(2, 6), 3))
+    limits = np.stack([rng.uniform(-1.2, -0.8, 3), rng.uniform(0.8, 1.2, 3)], axis=1)
+    if seed % 5 == 0:
+        limits[0] = points[:, 0].min(), points[:, 0].max()
+    curve = timed_move(points, PROFILES[seed % 3], FREE, 3.0, PASSINGS[seed // 3 % 3])
+    t = np.linspace(0.0, 3.0, 30_001)
+    q = curve.at(t)[0]
+    outside = ((q < limits[:, 0] - 1e-9) | (q > limits[:, 1] + 1e-9)).any(axis=1)
+    left = curve.leaves(limits)
+    assert outside.any() == (left is not None)
+    if left is not None:
+        assert abs(t[outside.argmax()] - left[0]) < 2e-4
+        if left[0] > 0.0:
+            assert curve.at(np.array([left[0]]))[0][0, left[1]] == pytest.approx(left[2], abs=1e-3)
+
+
+def test_a_curve_evaluates_its_own_pieces():
+    c = np.zeros((2, 6, 1))
+    c[0, :, 0], c[1, :, 0] = (1, 2, 3, 4, 5, 6), (7, 0, 0, 0, 0, 1)
+    q, velocity, acceleration = TimedCurve(np.array([0.0, 1.0, 3.0]), c).at(np.array([0.5, 1.0, 3.0]))
+    powers = 0.5 ** np.arange(6)
+    assert q[:, 0] == pytest.approx([powers @ c[0, :, 0], 7.0, 7.0 + 32.0])
+    assert velocity[:, 0] == pytest.approx([(powers[:5] * np.arange(1, 6)) @ c[0, 1:, 0], 0.0, 80.0])
+    assert acceleration[2, 0] == pytest.approx(20 * 8.0)
+
+
+# Paths of robots.
+
+
+def test_a_trajectory_has_rows_in_seconds():
+    path = trajectory(PUMA, [np.zeros(6), np.full(6, 0.3), np.full(6, -0.2)], max_velocity=0.5, steps=50)
+    assert path.complete and len(path) == 51 and path.t[-1] == pytest.approx(path.duration)
+    assert np.abs(path.velocity).max() <= 0.5 + 1e-12
+    np.testing.assert_array_equal(path.q[-1], np.full(6, -0.2))
+    np.testing.assert_allclose(path.T, robokin.forward_kinematics(PUMA, path.q))
+
+
+def test_a_rate_gives_even_rows_and_the_end():
+    path = trajectory(PLANAR, [[0, 0], [1, 1]], duration=1.0, rate=8.0)
+    np.testing.assert_allclose(path.t, np.arange(9) / 8)
+    path = trajectory(PLANAR, [[0, 0], [1, 1]], duration=1.05, rate=10.0)
+    np.testing.assert_allclose(path.t, [*np.arange(11) / 10, 1.05])
+
+
+def test_a_path_in_time_is_the_old_path_at_its_times():
+    plain = robokin.interpolate_joints(PUMA, np.zeros(6), np.full(6, 0.4), 20)
+    timed = trajectory(PUMA, [np.zeros(6), np.full(6, 0.4)], duration=3.0, steps=20)
+    np.testing.assert_allclose(timed.q, plain.q, atol=1e-14)
+    np.testing.assert_allclose(timed.t, 3.0 * plain.t)
+
+
+def test_limits_end_a_trajectory():
+    far = np.zeros(6)
+    far[1] = 3.0  # the shoulder's limit is 45°
+    path = trajectory(PUMA, [np.zeros(6), far], duration=2.0)
+    assert not path.complete and path.events[-1].kind == "limit" and path.events[-1].joint == 2
+    assert path.events[-1].value == pytest.approx(math.radians(45)) and PUMA.within_limits(path.q).all()
+    assert trajectory(PUMA, [np.zeros(6), far], duration=2.0, limits=False).complete
+
+
+@pytest.mark.parametrize(
+    ("robot", "start", "end"),
+    [("ur5e", [0.3, -1.2, 1.4, -0.5, 1.2, 0.1], [0.6, -1.0, 1.1, -0.2, 1.0, 0.4]),
+     ("planar2r", [0.5, 0.9], [1.3, 0.4]), ("scara", [0.1, 0.8, 0.05, 0.2], [0.5, 0.6, 0.1, -0.3]),
+     ("iiwa14", [0.2, 0.6, 0.1, -1.2, 0.3, 0.7, 0.2], [0.4, 0.7, 0.0, -1.0, 0.2, 0.8, 0.1])],
+)  # fmt: skip
+@pytest.mark.parametrize("profile", PROFILES)
+def test_velocities_of_a_line_are_derivatives_and_its_twist_is_straight(robot, start, end, profile):
+    robot = robokin.load(robot)
+    T = robokin.forward_kinematics(robot, end)
+    timing = Timing(motion_limits(robot, 0.4, None), profile)
+    path = path_through(robot, np.array(start), [Goal(T=T)], 400, Manner("line", timing=timing))
+    assert path.complete and path.kind == "line"
+    assert np.abs(path.velocity).max() == pytest.approx(0.4)
+    step = path.t[1] - path.t[0]
+    middle = (path.q[2:] - path.q[:-2]) / (2 * step)
+    loose = 0.02 if robot.n == 7 else 2e-4  # a redundant arm moves by least motion from row to row
+    smooth = slice(None) if profile != "trapezoidal" else slice(2, 100)
+    np.testing.assert_allclose(middle[smooth], path.velocity[1:-1][smooth], atol=loose * np.abs(path.velocity).max())
+    if robot.n < 7:
+        bends = (path.velocity[2:] - path.velocity[:-2]) / (2 * step)
+        atol = 2e-3 * np.abs(path.acceleration).max()
+        np.testing.assert_allclose(bends[smooth], path.acceleration[1:-1][smooth], atol=atol)
+    J = robokin.jacobian(robot, path.q)
+    twist = np.einsum("mij,mj->mi", J, path.velocity)[:, :3]
+    way = T[:3, 3] - path.T[0, :3, 3]
+    along = unit_law(profile, path.t / path.duration)[1] / path.duration
+    np.testing.assert_allclose(twist, along[:, None] * way, atol=1e-6 * np.abs(way).max() / path.duration)
+
+
+def test_a_line_passes_its_points_with_a_stop_at_each():
+    start, mid, end = [0.5, 0.9], [0.8, 0.7], [1.3, 0.4]
+    timing = Timing(motion_limits(PLANAR, None, None), "cubic", 2.0)
+    path = path_through(
+        PLANAR, np.array(start), [Goal(np.array(mid)), Goal(np.array(end))], 50, Manner("line", timing=timing)
+    )
+    assert path.complete and len(path) == 101 and path.duration == 4.0
+    np.testing.assert_allclose(path.q[[0, 50, 100]], [start, mid, end], atol=1e-9)
+    assert np.abs(path.velocity[[0, 50, 100]]).max() < 1e-9 and (np.diff(path.t) > 0).all()
+    assert path.s[[0, 50, 100]] == pytest.approx([0, 0.5, 1])
+
+
+def test_a_line_that_ends_before_its_points():
+    timing = Timing(motion_limits(PLANAR, None, None))
+    goals = [Goal(np.array([0.8, 0.7])), Goal(T=robokin.transform("Trans(9, 0, 0)")), Goal(np.array([0.1, 0.7]))]
+    path = path_through(PLANAR, np.array([0.5, 0.9]), goals, 40, Manner("line", timing=timing))
+    assert not path.complete and 1 / 3 < path.fraction < 2 / 3
+    assert path.events[-1].fraction == pytest.approx(path.fraction)
+
+
+def test_an_arc_is_on_its_circle():
+    first, last = (
+        robokin.forward_kinematics(UR, q) for q in ([0.3, -1.2, 1.4, -0.5, 1.2, 0.1], [0.6, -1.0, 1.1, -0.2, 1.0, 0.4])
+    )
+    via = 0.5 * (first + last)[:3, 3] + [0, 0, 0.08]
+    arc = CircularArc(first, via, last)
+    s = np.linspace(0, 1, 201)
+    p = arc.at(s)[:, :3, 3]
+    np.testing.assert_allclose(p[[0, -1]], [first[:3, 3], last[:3, 3]], atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(p - arc.centre, axis=1), np.linalg.norm(via - arc.centre), atol=1e-12)
+    assert np.linalg.norm(p - via, axis=1).min() < 1e-3
+    np.testing.assert_allclose(arc.at(s)[-1, :3, :3], last[:3, :3], atol=1e-12)
+    h = 1e-6
+    difference = (arc.at(s + h)[:, :3, 3] - arc.at(s - h)[:, :3, 3]) / (2 * h)
+    np.testing.assert_allclose(difference, arc.twist(s)[:, :3], atol=1e-8)
+    path = follow_curve(UR, np.array([0.3, -1.2, 1.4, -0.5, 1.2, 0.1]), arc, s, s, True, "pose")
+    assert path.complete
+    np.testing.assert_allclose(path.T, arc.at(s), atol=1e-8)
+
+
+@pytest.mark.parametrize("via", [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.5, 0.5, 0.0]])
+def test_three_places_on_a_line_are_no_arc(via):
+    with pytest.raises(InputError, match="on a line"):
+        CircularArc(np.eye(4), np.array(via), robokin.transform("Trans(1, 1, 0)"))
+
+
+def test_a_singular_line_has_no_duration_within_limits():
+    """A stretched arm cannot begin to move inwards at a finite velocity of its elbow."""
+    timing = Timing(motion_limits(PLANAR, 1.0, 1.0), "cubic")
+    with pytest.raises(InputError, match="no bound where the path is singular"):
+        path_through(PLANAR, np.zeros(2), [Goal(T=robokin.transform("Trans(0.5, 0, 0)"))], 50,
+                     Manner("line", timing=timing))  # fmt: skip
+
+
+def test_joined_paths_of_one():
+    path = robokin.interpolate_joints(PLANAR, [0, 0], [1, 1], 4)
+    assert joined([path]) is path
+    both = joined([path, robokin.interpolate_joints(PLANAR, [1, 1], [2, 0], 4)])
+    assert len(both) == 9 and both.t[-1] == 1.0 and both.duration is None and both.velocity is None
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"points": [[0, 0]]}, "expected two rows or more"),
+        ({"points": [[0, 0, 0], [1, 1, 1]]}, "expected two rows or more of 2"),
+        ({"points": [[0, 0], [1, math.nan]]}, "finite"),
+        ({"profile": "septic"}, "profile"),
+        ({"passing": "jump"}, "passing"),
+        ({"duration": 0.0}, "duration: found 0, expected seconds above 0"),
+        ({"duration": -1.0}, "duration"),
+        ({"max_velocity": 0.0}, "max_velocity"),
+        ({"max_velocity": [1.0, 2.0, 3.0]}, "max_velocity"),
+        ({"max_velocity": math.nan}, "max_velocity"),
+        ({"max_velocity": [math.inf, 1.0], "points": [[0, 0], [1, 0]]}, "joint 1 moves and has no limit"),
+        ({"blend": 0.0, "passing": "blend"}, "blend"),
+        ({"blend": 1.5}, "blend"),
+        ({"rate": 0.0}, "rate"),
+        ({"rate": 1e12}, "rate"),
+        ({"steps": 0}, "steps"),
+    ],
+)
+def test_wrong_arguments_are_told(options, said):
+    points = options.pop("points", [[0, 0], [1, 1]])
+    with pytest.raises(InputError, match=said):
+        trajectory(PLANAR, points, **options)
+
+
+@pytest.mark.parametrize("passing", PASSINGS)
+def test_points_that_do_not_move(passing):
+    path = trajectory(PLANAR, [[0.3, 0.4]] * 3, passing=passing, max_velocity=1.0, steps=4)
+    assert path.duration == 1.0 and np.array_equal(path.q, [[0.3, 0.4]] * 5) and not path.velocity.any()
