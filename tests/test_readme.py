@@ -8,8 +8,9 @@ import sys
 from pathlib import Path
 
 import pytest
-import yaml
 from documentation import in_a_shell, runs, same, steps
+
+from robokin.formats.first_description import example
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
@@ -33,8 +34,7 @@ def test_commands_print_what_is_shown(command, shown, tmp_path, monkeypatch):
 
 def test_the_robot_of_the_readme_works(tmp_path):
     (description,) = blocks("yaml")
-    assert yaml.safe_load(description)["name"] == "My arm"
-    (tmp_path / "arm.yaml").write_text(description)
+    assert description == example("arm").text
     for command in re.findall(r"`(robokin [^`]*arm\.yaml[^`]*)`", README):
         done = subprocess.run([sys.executable, "-m", *command.split()], cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr

@@ -7,7 +7,8 @@ import unicodedata
 from dataclasses import dataclass
 
 from robokin.formats.expression_functions import FUNCTIONS, Function
-from robokin.formats.number_expressions import Parser, Scope, Token, Value
+from robokin.formats.expression_tokens import Token
+from robokin.formats.number_expressions import Parser, Scope, Value
 
 DEGREE_SIGNS = "°º˚⁰∘"
 DASHES = "−–—‒‐‑﹣－"

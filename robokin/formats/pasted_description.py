@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from robokin.errors import ExpressionError, InputError, or_list, shown
 from robokin.formats.description_lines import yaml_text
-from robokin.formats.number_expressions import NAME, RESERVED, Scope, evaluate
+from robokin.formats.expression_tokens import NAME
+from robokin.formats.number_expressions import RESERVED, Scope, evaluate
 from robokin.formats.pasted_cells import plain_text, read_expression
 from robokin.formats.pasted_conventions import CONVENTIONS, convention_of
 from robokin.formats.pasted_headings import TABLE, PastedHeading, heading_of, units_of_row
