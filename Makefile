@@ -67,8 +67,8 @@ lint: $(VENV)/dev ## style and types
 fuzz: $(VENV)/dev ## hostile calls of every command for five minutes; FUZZ_SECONDS=30, FUZZ_SEED=7
 	$(BIN)/python tests/fuzz.py
 
-bench: $(VENV)/dev ## speed, as ratios against peers and limits, in one run
-	$(BIN)/python -m benchmarks
+bench: $(VENV)/dev ## speed, as ratios against peers and limits, in one run; what got worse; make bench PEERS=SITE-PACKAGES
+	PEERS=$(PEERS) $(BIN)/python -m benchmarks
 
 completeness: $(VENV)/dev ## whether all solutions are all, counted; make completeness FULL=1 takes hours
 	FULL=$(FULL) $(BIN)/python -m benchmarks.completeness

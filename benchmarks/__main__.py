@@ -7,12 +7,14 @@ import sys
 from benchmarks import (
     flagged,
     forward,
+    history,
     inverse,
     machine,
     mobility,
     names,
     nearest,
     one_call,
+    pairs,
     pipes,
     plausibility,
     redundant,
@@ -23,6 +25,7 @@ from benchmarks import (
 BENCHMARKS = {
     "forward": forward.run,
     "one-call": one_call.run,
+    "pairs": pairs.run,
     "pipes": pipes.run,
     "inverse": inverse.run,
     "flagged": flagged.run,
@@ -44,7 +47,9 @@ def main() -> None:
     print(machine.describe())
     for name in chosen:
         print()
+        machine.begin(name)
         BENCHMARKS[name]()
+    history.keep()
 
 
 if __name__ == "__main__":

@@ -37,7 +37,7 @@ def run() -> None:
     theirs = best_of(lambda: stacked(robot, part), 3) / len(part) * 1e6
     line("robokin.forward_kinematics", f"{ours:.3f}", "limit 0.25")
     line("stacked 4×4 products in numpy", f"{theirs:.3f}", f"{theirs / ours:.1f} times as long (limit 7)")
-    line("greatest difference between the two", f"{error:.1e}", "m | 1")
+    line("greatest difference between the two", f"{error:.1e}", "m | 1", time=False)
     single = robot.poses["home"]
     one = best_of(lambda: [robokin.forward_kinematics(robot, single) for _ in range(200)]) / 200 * 1e6
     line("one pose at a time", f"{one:.0f}", "µs a call")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import platform
 import time
@@ -34,6 +35,22 @@ def best_of(action: Callable[[], object], times: int = 5) -> float:
     return min(taken)
 
 
-def line(name: str, figure: str, remark: str = "") -> None:
-    """A line of the report."""
+figures: dict[str, float] = {}
+"""The times of this run, for the history."""
+
+_benchmark = ""
+
+
+def begin(benchmark: str) -> None:
+    """The lines that follow are of a benchmark."""
+    global _benchmark
+    _benchmark = benchmark
+
+
+def line(name: str, figure: str, remark: str = "", *, time: bool = True) -> None:
+    """A line of the report. `time` tells that its figure is a time, of which more is worse."""
     print(f"  {name:<52} {figure:>12}  {remark}".rstrip())
+    with contextlib.suppress(ValueError):
+        value = float(figure.replace(",", ""))
+        if time:
+            figures[f"{_benchmark}: {name.strip()}"] = value

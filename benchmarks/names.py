@@ -70,8 +70,8 @@ def _answers(robot: robokin.Robot, q: np.ndarray) -> list[tuple[list[str], str |
 def run() -> None:
     print(f"names of solutions, {POSES} random poses an arm")
     rows = unique_names()
-    line("poses where two solutions have one name", str(sum(row.repeated for row in rows)), "limit 0")
-    line("poses that a step of 1e-4 renames", str(sum(row.renamed for row in rows)), f"{len(rows)} arms")
+    line("poses where two solutions have one name", str(sum(row.repeated for row in rows)), "limit 0", time=False)
+    line("poses that a step of 1e-4 renames", str(sum(row.renamed for row in rows)), f"{len(rows)} arms", time=False)
     for row in rows:
         if row.repeated or row.renamed:
             line(f"  {row.arm}", f"{row.repeated}, {row.renamed}", f"repeated, renamed of {row.poses}")

@@ -99,8 +99,13 @@ def run(targets: int = TARGETS, chains: int = 0, seed: int = SEED) -> None:
             worse, seconds = worse_than_known(robot, each, edge, rng)
             total, taken = total + worse, taken + seconds
             if worse:
-                line(robot.name, str(worse), f"of {each}")
-        line("all arms", str(total), f"of {each * len(robots)}, {taken / each / len(robots) * 1e3:.1f} ms a target")
+                line(robot.name, str(worse), f"of {each}", time=False)
+        line(
+            "all arms",
+            str(total),
+            f"of {each * len(robots)}, {taken / each / len(robots) * 1e3:.1f} ms a target",
+            time=False,
+        )
 
 
 def main() -> None:

@@ -80,7 +80,7 @@ def _positions(cores: int) -> None:
                 3,
             )
             wanted = f"limit {POSITIONS / 1e6:.0f} on two cores" if name == "puma560" and used > 1 else ""
-            line(f"{name}, million positions a second, {used} cores", f"{count / taken / 1e6:.1f}", wanted)
+            line(f"{name}, million positions a second, {used} cores", f"{count / taken / 1e6:.1f}", wanted, time=False)
 
 
 def _orientations(cores: int) -> None:
@@ -97,6 +97,7 @@ def _orientations(cores: int) -> None:
             f"{name}, orientation queries a second",
             f"{asked / taken:,.0f}",
             f"{wanted}{np.mean(found):.1%} can be reached",
+            time=False,
         )
 
 
@@ -183,5 +184,5 @@ def _files() -> None:
             remark = (
                 f"{Path(path).stat().st_size / 1e6:.0f} MB; peak memory {float(done.stdout):.0f} MB (limit {MEMORY})"
             )
-            line(f"{samples:,} samples with {with_} to {ending}, a second", f"{rate:,.0f}", remark)
+            line(f"{samples:,} samples with {with_} to {ending}, a second", f"{rate:,.0f}", remark, time=False)
             Path(path).unlink()

@@ -131,7 +131,13 @@ def __getattr__(name: str) -> object:
     if name in _MODULES:
         value: object = import_module(f"robokin.{name}")
     elif name in _HOMES:
-        value = getattr(import_module(_HOMES[name]), name)
+        try:
+            value = getattr(import_module(_HOMES[name]), name)
+        except Exception as error:
+            if type(error).__module__ != "robokin.errors":
+                raise
+            # Its sentence is about the environment, and the way to it of no interest.
+            raise error.with_traceback(None) from None
     else:
         raise AttributeError(f"module 'robokin' has no attribute {name!r}")
     globals()[name] = value

@@ -264,7 +264,7 @@ RIGHT = {
     "load_wheeled": {"name_or_path": "car"},
     "forward_kinematics": {"robot": PUMA, "q": Q, "cores": 1},
     "link_frames": {"robot": PUMA, "q": Q},
-    "jacobian": {"robot": PUMA, "q": Q, "frame": "tool"},
+    "jacobian": {"robot": PUMA, "q": Q, "frame": "tool", "cores": 1},
     "differential_kinematics": {"robot": PUMA, "q": Q, "frame": "base", "task": "pose"},
     "singular_configurations": {"robot": PLANAR, "task": None},
     "solve_ik": {

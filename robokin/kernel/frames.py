@@ -44,6 +44,15 @@ def pose(chain: Chain, q: Array) -> Array:
     return run(program_to_tool(chain), q)[..., 0, :, :] if native is None or known is None else native.pose(known, q)
 
 
+def fill_poses(chain: Chain, q: Array, out: Array) -> None:
+    """The same for q: (m, n), into `out` (m, 4, 4), an array in C's order."""
+    known = handle(chain)
+    if native is None or known is None:
+        out[:] = pose(chain, q)
+    else:
+        native.pose(known, q, out)
+
+
 def run(program: ChainProgram, q: Array) -> Array:
     """The frames (..., k, 4, 4) [m] that a program leads to at q: (..., n) [rad | m], a block at a time."""
     rows = q.reshape(math.prod(q.shape[:-1]), program.n)

@@ -35,6 +35,15 @@ def jacobian(chain: Chain, q: Array, frame: Literal["base", "tool"] = "base", si
     return J
 
 
+def fill_jacobians(chain: Chain, q: Array, frame: Literal["base", "tool"], out: Array) -> None:
+    """The same for q: (m, n), into `out` (m, 6, n), an array in C's order."""
+    known = handle(chain)
+    if native is None or known is None:
+        out[:] = jacobian(chain, q, frame)
+    else:
+        native.jacobian(known, q, 1.0, frame == "tool", out)
+
+
 def jacobian_of(F: Array, revolute: Flags, frame: Literal["base", "tool"] = "base", size: float = 1.0) -> Array:
     """The same for the frames F: (..., n + 1, 4, 4) [m] that the joints start from and, last, of what is moved."""
     z, o = F[..., :-1, :3, 2], F[..., :-1, :3, 3]

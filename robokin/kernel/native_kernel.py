@@ -1,4 +1,4 @@
-"""The native kernel, where there is one: frames, Jacobians and residuals of chains in C.
+"""The native kernel, where there is one: frames, Jacobians and residuals of chains, and numbers as text, in C.
 
 It is optional and gives what Python's code gives, but for the last digits. `ROBOKIN_KERNEL=python` does without it,
 `ROBOKIN_KERNEL=native` insists on it.
@@ -16,7 +16,7 @@ from robokin.errors import InputError
 from robokin.kernel.chain import Chain
 from robokin.kernel.facts import fact
 
-INTERFACE = 1
+INTERFACE = 2
 """What the C code offers; one of another version, as an old build leaves it in the sources, is not used."""
 
 

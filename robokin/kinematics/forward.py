@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from collections import deque
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.expected import expect_numbers, expect_whole
-from robokin.jobs.ordered_map import MOST_CORES, ordered_map
+from robokin.jobs.ordered_map import MOST_CORES
+from robokin.jobs.shared_rows import by_threads
 from robokin.kernel.chain import chain_of
 from robokin.kernel.columns import BLOCK, ChainProgram, Constant
 from robokin.kernel.facts import fact
-from robokin.kernel.frames import frames, pose, program_to_tool, run
+from robokin.kernel.frames import fill_poses, frames, pose, program_to_tool, run
 from robokin.kernel.native_kernel import native
 from robokin.kernel.straight_line import Straight, straight_frame
 from robokin.model import CoupledRobot, Robot, expect_robot
@@ -25,6 +23,13 @@ FLOATS = np.dtype(np.float64)
 
 SHARE = 8 * BLOCK
 """Configurations that a thread takes at once: for fewer it is not worth while to start one."""
+
+
+def threads_wanted(cores: int | None) -> int | None:
+    """`cores` as a caller gives them, checked. Raises InputError."""
+    if type(cores) is int and cores == 1:
+        return 1
+    return None if cores is None else expect_whole(cores, "cores", 1, MOST_CORES)
 
 
 def forward_kinematics(robot: Robot, q: ArrayLike, cores: int | None = 1) -> Array:
@@ -37,9 +42,8 @@ def forward_kinematics(robot: Robot, q: ArrayLike, cores: int | None = 1) -> Arr
     J. Applied Mechanics 22, 1955; modified tables as J. J. Craig, Introduction to Robotics, 1986, has them.
     """
     q, moving = joint_motions(robot, q)
-    if type(cores) is not int or cores != 1:
-        cores = None if cores is None else expect_whole(cores, "cores", 1, MOST_CORES)
-    elif native is None and q.ndim == 1:
+    cores = threads_wanted(cores)
+    if cores == 1 and native is None and q.ndim == 1:
         one = _one_pose(moving)
         if one is not None:
             try:
@@ -49,14 +53,7 @@ def forward_kinematics(robot: Robot, q: ArrayLike, cores: int | None = 1) -> Arr
     chain = chain_of(moving)
     if cores == 1:
         return pose(chain, q)
-    rows = q.reshape(math.prod(q.shape[:-1]), moving.n)
-    T = np.empty((len(rows), 4, 4))
-
-    def fill(start: int) -> None:
-        T[start : start + SHARE] = pose(chain, rows[start : start + SHARE])
-
-    deque(ordered_map(fill, range(0, len(rows), SHARE), cores, workers="threads"), maxlen=0)
-    return T.reshape(*q.shape[:-1], 4, 4)
+    return by_threads(lambda part, out: fill_poses(chain, part, out), q, (4, 4), SHARE, cores)
 
 
 @fact

@@ -5,12 +5,15 @@ from __future__ import annotations
 import io
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from robokin.arrays import Array
 from robokin.tables.carried import Carried
 from robokin.tables.sink import sink
 from robokin.tables.written_rows import json_document, json_line, json_list
+
+if TYPE_CHECKING:
+    from robokin.jobs.ordered_map import Workers
 
 
 class AnswerStream(ABC):
@@ -77,13 +80,17 @@ class SharedStream(AnswerStream):
         from robokin.reports.shared_blocks import blocks_written
 
         total = 0
-        for data, rows, found in blocks_written(self.part, kind, blocks, self.carried, self.cores):
+        for data, rows, found in blocks_written(self.part, kind, blocks, self.carried, self.cores, self.workers(kind)):
             total += rows
             if rows:
                 self.add(rows, found)
             yield data
         if not total and kind != "json":
             yield from super().write(kind, (), stream)
+
+    def workers(self, kind: str) -> Workers:
+        """What the cores are: processes, where Python does the work."""
+        return "processes"
 
     def part(self, kind: str, first: int, block: Array, carried: Carried) -> tuple[bytes, Any]:
         """The answers to one block whose first question has the number first + 1, and what else is known of them."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from robokin.tables.carried import Carried, nothing
 from robokin.tables.orientations import orientation, pose_columns, pose_table
 from robokin.tables.written_rows import csv_header, csv_rows, page
 from robokin.units import Units
+
+if TYPE_CHECKING:
+    from robokin.jobs.ordered_map import Workers
 
 RECORD_KEYS = ("schema", "robot", "id", "units", "q", "within_limits", "pose", "frames")
 """What a JSON document says itself."""
@@ -59,6 +62,12 @@ class PoseReport(SharedStream):
         """The same for the configurations behind the first ones."""
         return replace(self, maker=self.maker.from_number(first), carried=carried, begun=first > 0, cores=1)
 
+    def workers(self, kind: str) -> Workers:
+        """Threads where the native kernel does the work: it lets go of the interpreter's lock."""
+        from robokin.kernel.native_kernel import native
+
+        return "threads" if native is not None and kind == "csv" and not self.carried.names else "processes"
+
     @property
     def found(self) -> tuple[int, int]:
         """How many configurations are outside the limits, and the number of the first one."""
@@ -86,6 +95,26 @@ class PoseReport(SharedStream):
         if not begun:
             yield self.carried.before(csv_header(columns), b"")
 
+    def shared(self, answers: Iterable[Array]) -> Iterator[PoseBlock]:
+        """The poses of each block, by as many threads as there are cores to use."""
+        if self.cores == 1:
+            yield from self.maker.of(answers)
+            return
+        from robokin.jobs.ordered_map import ordered_map, usable_cores
+        from robokin.reports.shared_blocks import WINDOW, numbered
+
+        window = WINDOW * (self.cores or usable_cores())
+        blocks = numbered(answers, self.carried)
+        for poses, found in ordered_map(self._poses_of, blocks, self.cores, window, "threads"):
+            self.maker.add(len(poses.q), *found)
+            yield poses
+
+    def _poses_of(self, task: tuple[int, Array, Carried]) -> tuple[PoseBlock, tuple[int, int]]:
+        first, block, _ = task
+        maker = self.maker.from_number(first)
+        (poses,) = maker.of([block])
+        return poses, (maker.outside, maker.first_outside)
+
     def npy(self, answers: Iterable[Array], stream: IO[bytes]) -> None:
         """The matrices (m, 4, 4), or with --as the columns of the poses, or with frames all of these."""
         from robokin.tables.array_writer import ArrayWriter
@@ -93,7 +122,7 @@ class PoseReport(SharedStream):
         kind = self.orientation or "matrix"
         writer: ArrayWriter | None = None
         shape: tuple[int, ...] = (4, 4) if kind == "matrix" else (len(pose_columns(kind)),)
-        for poses in self.maker.of(answers):
+        for poses in self.shared(answers):
             block = poses.T if kind == "matrix" else pose_table(poses.T, kind, self.units)
             if poses.frames is not None:
                 block = poses.frames

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from robokin.arrays import Array
-from robokin.jobs.ordered_map import ordered_map, usable_cores
+from robokin.jobs.ordered_map import Workers, ordered_map, usable_cores
 from robokin.tables.carried import Carried
 
 WINDOW = 3
@@ -20,16 +20,17 @@ def blocks_written(
     blocks: Iterable[Array],
     carried: Carried,
     cores: int | None,
+    workers: Workers = "processes",
 ) -> Iterator[tuple[bytes, int, Any]]:
     """The bytes of each block (m, …), its number of rows, and what else `part` found.
 
     part: makes the answers to a block in a format whose first row has a number, from 0, with what the rows carry.
-    JSON is a list of lines.
+    JSON is a list of lines. workers: threads where `part` lets go of the interpreter's lock most of its time.
     """
     window = WINDOW * (cores or usable_cores())
     made = partial(_made, part, "jsonl" if kind == "json" else kind)
     before = b"[\n"
-    for data, rows, more in ordered_map(made, _numbered(blocks, carried), cores, window, "processes"):
+    for data, rows, more in ordered_map(made, numbered(blocks, carried), cores, window, workers):
         if kind == "json":
             # No text within a line of JSON has a line break.
             data, before = before + data[:-1].replace(b"\n", b",\n"), b",\n"
@@ -38,7 +39,7 @@ def blocks_written(
         yield b"[]\n" if before == b"[\n" else b"\n]\n", 0, None
 
 
-def _numbered(blocks: Iterable[Array], carried: Carried) -> Iterator[tuple[int, Array, Carried]]:
+def numbered(blocks: Iterable[Array], carried: Carried) -> Iterator[tuple[int, Array, Carried]]:
     """Each block with the number of its first row and what its rows carry."""
     first = 0
     for block in blocks:

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from typing import IO, Any
+from itertools import chain
+from typing import IO
 
 import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import ExpressionError, InputError, counted
 from robokin.formats.number_expressions import Scope, evaluate
+from robokin.kernel.native_kernel import native
 from robokin.tables.carried import Carried
 from robokin.tables.csv_records import Record, RecordReader
 from robokin.tables.fast_json import pydantic_function
@@ -27,8 +29,13 @@ from robokin.units import Units
 NUMERALS = b"0123456789+-.eE, \t\r\n"
 """All that a block of plain numbers consists of."""
 
+IGNORED, NUMBER, TEXT, SOLUTION = range(4)
+"""What a column is to the native kernel: TEXT goes through, of a SOLUTION 0 is not plain."""
+
 UNPLAIN = (b'"', b"#", b"\r", b"\0")
 """What a block may not hold that is split at its separators: quotes, comments, other ends of lines."""
+
+WHOLE_MINUS_ZERO = re.compile(rb"(?<![eE])-0(?![.eE])")
 
 HEADER_CELL = re.compile(r"\s*[A-Za-z_][\w .()\[\]/°-]*\s*")
 
@@ -167,8 +174,10 @@ class CsvReader(RecordReader):
         """A block of plain numbers, and of text without quotes in other columns; None when it holds anything else."""
         if not block:
             return None
-        block = block.replace(b"\r\n", b"\n").removesuffix(b"\n")
         assert self.found is not None
+        if native is not None and (rows := self.native_rows(block)) is not None:
+            return rows
+        block = (block.replace(b"\r\n", b"\n") if b"\r" in block else block).removesuffix(b"\n")
         places = list(self.found.places)
         passed: list[list[str]] = []
         if self.passed or self.separator not in ", " or block.translate(None, NUMERALS):
@@ -180,16 +189,43 @@ class CsvReader(RecordReader):
         else:
             width = self.width
         try:
-            rows = np.array(numbers_of(block), dtype=float)
+            rows = numbers_of(block, width)
         except (ValueError, TypeError, OverflowError):
             return None
-        if rows.ndim != 2 or rows.shape[1] != width or not np.isfinite(rows).all():
+        if not np.isfinite(rows).all():
             return None
+        return self.taken(rows if places == list(range(width)) else rows[:, places], passed)
+
+    def taken(self, rows: Array, passed: list[list[str]]) -> Array:
+        """Rows (m, k) of a block that is read as a whole, in the wanted units; `passed` goes through."""
         self.carried.put(passed)
         self.row_lines = range(self.line + 1, self.line + 1 + len(rows))
         self.line += len(rows)
-        values = rows if places == list(range(width)) else rows[:, places]
-        return values if self.factors is None else values * self.factors
+        return rows if self.factors is None else rows * self.factors
+
+    def native_rows(self, block: bytes) -> Array | None:
+        """The same by the native kernel, which knows plain rows alone."""
+        assert native is not None and self.found is not None
+        places = self.found.places
+        kinds = bytearray(self.width)
+        for i in self.passed:
+            kinds[i] = TEXT
+        if self.solution is not None:
+            kinds[self.solution] = SOLUTION
+        for i in places:
+            kinds[i] = NUMBER
+        if self.passed != sorted(self.passed) or kinds.count(TEXT) != len(self.passed):
+            return None
+        read = native.rows_in(block, b" " if self.aligned else self.separator.encode(), bytes(kinds))
+        if read is None:
+            return None
+        rows, passed, points = read
+        if self.decimal.commas and points:
+            if self.decimal.seen == ",":
+                return None
+            self.decimal.seen = "."
+        order = sorted(places)
+        return self.taken(rows if list(places) == order else rows[:, [order.index(i) for i in places]], passed)
 
     def split(self, block: bytes) -> tuple[bytes, list[list[str]]] | None:
         """The wanted columns of a block as plain numbers with points and commas, and the cells that go through."""
@@ -215,12 +251,18 @@ class CsvReader(RecordReader):
         return numbers.replace(b",", b".").replace(b";", b","), passed
 
 
-def numbers_of(block: bytes) -> Any:
-    """Lines of numbers and commas as a list of lists. Raises ValueError.
+def numbers_of(block: bytes, width: int) -> Array:
+    """Lines of so many numbers each, with commas, as an array (m, width). Raises ValueError.
 
     pydantic's core, which Typer brings, reads JSON ten times faster than float() reads numbers.
     """
     from_json = pydantic_function("from_json")
     if from_json is not None:
-        return from_json(b"[[" + block.replace(b"\n", b"],[") + b"]]", allow_inf_nan=False)
-    return [[float(cell) for cell in line.split(b",")] for line in block.split(b"\n")]
+        if b"-0" in block and WHOLE_MINUS_ZERO.search(block):
+            raise ValueError("JSON has no sign for a whole number that is 0")
+        rows = from_json(b"[[" + block.replace(b"\n", b"],[") + b"]]", allow_inf_nan=False)
+    else:
+        rows = [[float(cell) for cell in line.split(b",")] for line in block.split(b"\n")]
+    if {*map(len, rows)} != {width}:
+        raise ValueError("lines of another length")
+    return np.fromiter(chain.from_iterable(rows), dtype=float, count=width * len(rows)).reshape(-1, width)

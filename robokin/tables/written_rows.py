@@ -7,6 +7,7 @@ import io
 import json
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from robokin.errors import visible
@@ -98,18 +99,56 @@ def csv_header(names: Iterable[str]) -> bytes:
 
 
 def csv_rows(table: Array) -> bytes:
-    """Rows of numbers, a line each, every number with the fewest digits that give it back.
+    """Rows of numbers (m, k), a line each, every number with the fewest digits that give it back.
 
-    pydantic's core, which Typer brings, writes them ten times faster than repr does. The digits are the
-    same; an exponent looks like 1e-7 rather than 1e-07.
+    Numbers look as JSON's do, 1e-7 and 0.00001 where repr has 1e-07 and 1e-05. Without the native kernel pydantic's
+    core, which Typer brings, writes them three times faster than repr does.
     """
     if not len(table):
         return b""
-    rows = table.tolist()
+    native = _kernel()
+    if native is not None:
+        lines: bytes = native.text_of_rows(table)
+        return lines
     to_json = pydantic_function("to_json")
-    if to_json is not None:
-        return bytes(to_json(rows)[2:-2].replace(b"],[", b"\n") + b"\n")
-    return "".join(",".join(map(repr, row)) + "\n" for row in rows).encode()
+    if to_json is None or not table.shape[1]:
+        return "".join(",".join(map(_number, row)) + "\n" for row in table.tolist()).encode()
+    import numpy as np
+
+    signs = bytearray(to_json(table.ravel().tolist())[1:])
+    signs[-1:] = b","
+    places = np.frombuffer(signs, dtype=np.uint8)
+    places[np.flatnonzero(places == COMMA)[table.shape[1] - 1 :: table.shape[1]]] = END_OF_LINE
+    text = bytes(signs)
+    # Older cores write 1e16 for 1e+16.
+    return UNSIGNED.sub(rb"e+\1", text) if b"e" in text else text
+
+
+COMMA, END_OF_LINE = b",\n"
+
+
+def _kernel() -> ModuleType | None:
+    """The native kernel; it is loaded with numpy, and so not before there are rows."""
+    from robokin.kernel.native_kernel import native
+
+    return native
+
+
+UNSIGNED = re.compile(rb"e(\d)")
+"""An exponent without a sign."""
+
+WORDS = {"nan": "NaN", "inf": "Infinity", "-inf": "-Infinity"}
+"""What is no number, and JSON's words for it."""
+
+
+def _number(x: float) -> str:
+    """A number as pydantic's core writes it."""
+    text = repr(x)
+    if 1e-5 <= abs(x) < 1e-4:
+        digits, _, exponent = text.lstrip("-").partition("e")
+        if exponent:
+            return "-" * (x < 0) + "0.0000" + digits.replace(".", "")
+    return WORDS.get(text) or re.sub(r"e([-+])0", r"e\1", text)
 
 
 def csv_records(columns: Sequence[str] | None, rows: Iterable[Sequence[Any]]) -> bytes:

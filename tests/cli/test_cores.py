@@ -108,10 +108,15 @@ def test_what_is_before_a_mistake_is_the_same(kind, call, joints):
     assert answer.status == 2 and "line 39" in answer.err
 
 
-def test_arrays_are_the_same(call, joints, tmp_path):
+def test_arrays_are_the_same(call, joints, tmp_path, monkeypatch):
+    monkeypatch.setattr("robokin.tables.array_rows.ARRAY_ROWS", 7)
+    rows = np.loadtxt(joints, delimiter=",", skiprows=1, usecols=range(1, 7))
+    np.save(tmp_path / "joints.npy", rows)
+
     def array(cores):
         path = tmp_path / f"{cores}.npy"
-        call("fk", "puma560", "-i", str(joints), "-o", str(path), "--cores", cores)
+        source = str(tmp_path / "joints.npy")
+        assert "1 of 40 configurations" in call("fk", "puma560", "-i", source, "-o", str(path), "--cores", cores).err
         return path.read_bytes()
 
     assert array("1") == array("2")

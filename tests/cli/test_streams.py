@@ -154,6 +154,8 @@ def test_other_units_hold_for_what_is_read(call):
 def test_an_older_typer_without_pydantic_reads_and_writes_the_same(call, expected, monkeypatch, text):
     for module in ("tables.csv_rows", "tables.written_rows"):
         monkeypatch.setattr(f"robokin.{module}.pydantic_function", lambda name: None)
+    monkeypatch.setattr("robokin.tables.csv_rows.native", None)
+    monkeypatch.setattr("robokin.tables.written_rows._kernel", lambda: None)
     answer = call("fk", "puma560", "--q", "-", "-f", "csv", stdin=text)
     assert answer.err == ""
     assert [[float(cell) for cell in line.split(",")] for line in answer.lines[1:]] == [

@@ -175,6 +175,29 @@ def test_numbers_that_change_the_arrays_meanwhile_change_nothing():
 
 
 @needs_kernel
+def test_answers_are_written_where_a_caller_wants_them(instructions, rng):
+    known, q = handle(chain_of(robokin.load("puma560"))), rng.uniform(-3, 3, (300, 6))
+    asks = {
+        native.pose: (known, q),
+        native.frames: (known, q),
+        native.jacobian: (known, q, 1.0, True),
+    }
+    for ask, arguments in asks.items():
+        plain = ask(*arguments)
+        out = np.full_like(plain, np.nan)
+        assert ask(*arguments, out) is out
+        assert out.tobytes() == plain.tobytes()
+        fixed = plain.copy()
+        fixed.flags.writeable = False
+        for wrong in (None, plain[:-1], plain.astype(np.float32), np.asfortranarray(plain), fixed, plain[::2], [0.0],
+                      np.zeros((2, *plain.shape))[0, ::-1], plain.astype(">f8")):  # fmt: skip
+            with pytest.raises((TypeError, ValueError)):
+                ask(*arguments, wrong)
+        with pytest.raises(TypeError):
+            ask(*arguments, out, out)
+
+
+@needs_kernel
 def test_any_layout_of_the_values_and_any_leading_shape(rng):
     robot = robokin.load("puma560")
     q = rng.uniform(-3, 3, (4, 3, 6))

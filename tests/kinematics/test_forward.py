@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from kinematics.chains import random_chain
@@ -155,13 +157,25 @@ def test_the_input_is_left_alone(rng):
 
 
 @pytest.mark.parametrize("m", [0, 1, 8, 50])
-def test_a_batch_that_threads_share_has_the_same_poses(m, monkeypatch, rng):
-    from robokin.kinematics import forward
+@pytest.mark.parametrize("name", ["puma560", "stanford", "m20ia"])
+def test_a_batch_that_threads_share_has_the_same_numbers(name, m, monkeypatch, rng):
+    from robokin.kinematics import forward, jacobian
 
-    monkeypatch.setattr(forward, "BLOCK", 4)
-    monkeypatch.setattr(forward, "SHARE", 8)
-    robot = robokin.load("puma560")
-    q = rng.normal(size=(m, 6))
-    one = robokin.forward_kinematics(robot, q)
-    assert np.array_equal(one, robokin.forward_kinematics(robot, q, cores=3))
-    assert np.array_equal(one, robokin.forward_kinematics(robot, q, cores=None))
+    for module in (forward, jacobian):
+        monkeypatch.setattr(module, "SHARE", 8)
+    robot = robokin.load(name)
+    q = rng.normal(size=(2, m, robot.n))
+    for ask in (robokin.forward_kinematics, robokin.jacobian, partial(robokin.jacobian, frame="tool")):
+        one = ask(robot, q)
+        for cores in (2, 3, None, np.int64(2)):
+            shared = ask(robot, q, cores=cores)
+            assert shared.shape == one.shape
+            assert shared.tobytes() == one.tobytes()
+        assert ask(robot, q[0, :1].reshape(-1, robot.n), cores=2).tobytes() == one[0, :1].tobytes()
+
+
+@pytest.mark.parametrize("cores", [0, -1, 1.5, "2", True, 10**6])
+@pytest.mark.parametrize("ask", [robokin.forward_kinematics, robokin.jacobian])
+def test_what_is_no_number_of_cores_is_refused(ask, cores):
+    with pytest.raises(robokin.InputError, match="cores"):
+        ask(robokin.load("puma560"), np.zeros(6), cores=cores)

@@ -19,6 +19,10 @@
 #error "needs doubles rounded one by one"
 #endif
 
+#if defined(_MSC_VER) && !defined(__clang__)
+#pragma fp_contract(off)
+#endif
+
 #define LANES 8
 #define FARTHEST 1e5
 

@@ -3,45 +3,33 @@
    Only for calls from robokin.kernel, which has seen to shapes and types: what is checked here keeps memory safe.
 */
 
-#define PY_SSIZE_T_CLEAN
-#define Py_LIMITED_API 0x030a0000
-#define NPY_NO_DEPRECATED_API NPY_1_19_API_VERSION
-#define NPY_TARGET_VERSION NPY_1_19_API_VERSION
+#define ROBOKIN_MODULE
 
-#include <Python.h>
-#include <numpy/arrayobject.h>
+#include "module.h"
 
-#include "chain.h"
+#ifdef ROBOKIN_AVX2
+#include "cpu.h"
+#endif
 
 #include <string.h>
 
 /* As robokin.kernel.native_kernel expects it. */
-#define INTERFACE 1
+#define INTERFACE 2
 
 /* numpy has no more, whatever its version. */
 #define MOST_DIMENSIONS 64
 
-static const char *CHAIN = "robokin.chain";
-
-typedef struct {
-    void (*poses)(const Chain *, const double *, ptrdiff_t, double *);
-    void (*frames)(const Chain *, const double *, ptrdiff_t, double *);
-    void (*jacobians)(const Chain *, const double *, ptrdiff_t, double, int, double *);
-    void (*errors)(const Chain *, const double *, const double *, ptrdiff_t, double, double *, double *);
-} Lanes;
-
 static const Lanes base = {poses_base, frames_base, jacobians_base, errors_base};
-static Lanes lanes;
+#ifdef ROBOKIN_AVX2
+static const Lanes avx2 = {poses_avx2, frames_avx2, jacobians_avx2, errors_avx2};
+#endif
+Lanes lanes;
 
 static const char *in_use = "base";
 
-/* A call on fewer configurations keeps the interpreter's lock: giving it back takes longer than the work. */
-static const npy_intp LONG = 256;
-
 static void freed(PyObject *capsule) { PyMem_Free(PyCapsule_GetPointer(capsule, CHAIN)); }
 
-/* A C-contiguous array of doubles (borrowed, or a new copy in *copy) with at least `least` dimensions. */
-static PyArrayObject *doubles(PyObject *object, int least, PyObject **copy) {
+PyArrayObject *doubles(PyObject *object, int least, PyObject **copy) {
     *copy = NULL;
     if (!PyArray_Check(object)) {
         PyErr_SetString(PyExc_TypeError, "expected an array");
@@ -111,8 +99,7 @@ end:
     return capsule;
 }
 
-/* The chain and the joint values (..., n) of a call. */
-static const Chain *asked(PyObject *capsule, PyObject *object, PyArrayObject **q, PyObject **copy) {
+const Chain *asked(PyObject *capsule, PyObject *object, PyArrayObject **q, PyObject **copy) {
     const Chain *known = PyCapsule_GetPointer(capsule, CHAIN);
     *copy = NULL;
     if (!known)
@@ -129,8 +116,7 @@ static const Chain *asked(PyObject *capsule, PyObject *object, PyArrayObject **q
     return known;
 }
 
-/* A new array of q's leading shape and `more` dimensions. */
-static PyObject *empty(PyArrayObject *q, int more, const npy_intp *shape) {
+PyObject *empty(PyArrayObject *q, int more, const npy_intp *shape) {
     npy_intp dims[MOST_DIMENSIONS];
     int before = PyArray_NDIM(q) - 1;
     if (before + more > MOST_DIMENSIONS) {
@@ -144,18 +130,35 @@ static PyObject *empty(PyArrayObject *q, int more, const npy_intp *shape) {
     return PyArray_EMPTY(before + more, dims, NPY_DOUBLE, 0);
 }
 
-static npy_intp rows(PyArrayObject *q) {
+npy_intp rows(PyArrayObject *q) {
     npy_intp m = 1;
     for (int i = 0; i < PyArray_NDIM(q) - 1; i++)
         m *= PyArray_DIM(q, i);
     return m;
 }
 
+/* The array that a caller gives for the answer, or a new one, of q's leading shape and `more` dimensions. */
+static PyObject *answer(PyObject *given, PyArrayObject *q, int more, const npy_intp *shape) {
+    if (!given)
+        return empty(q, more, shape);
+    npy_intp size = rows(q);
+    for (int i = 0; i < more; i++)
+        size *= shape[i];
+    PyArrayObject *out = (PyArrayObject *)given;
+    if (!PyArray_Check(given) || PyArray_TYPE(out) != NPY_DOUBLE || PyArray_SIZE(out) != size ||
+        !PyArray_ISCARRAY(out)) {
+        PyErr_SetString(PyExc_ValueError, "expected an array for the answer that is as large as it");
+        return NULL;
+    }
+    Py_INCREF(given);
+    return given;
+}
+
 /* The frames that joints start from and the tool's, or the tool's alone. */
 static PyObject *led_to(PyObject *const *args, Py_ssize_t count, int every) {
     PyArrayObject *q;
     PyObject *copy, *out = NULL;
-    const Chain *known = count == 2 ? asked(args[0], args[1], &q, &copy) : NULL;
+    const Chain *known = count == 2 || count == 3 ? asked(args[0], args[1], &q, &copy) : NULL;
     if (!known) {
         if (!PyErr_Occurred())
             PyErr_SetString(PyExc_TypeError, "expected a chain and joint values");
@@ -163,7 +166,8 @@ static PyObject *led_to(PyObject *const *args, Py_ssize_t count, int every) {
     }
     const npy_intp shape[] = {known->n + 1, 4, 4};
     npy_intp m = rows(q);
-    out = every ? empty(q, 3, shape) : empty(q, 2, shape + 1);
+    PyObject *given = count == 3 ? args[2] : NULL;
+    out = every ? answer(given, q, 3, shape) : answer(given, q, 2, shape + 1);
     if (out) {
         void (*run)(const Chain *, const double *, ptrdiff_t, double *) = every ? lanes.frames : lanes.poses;
         double *to = PyArray_DATA((PyArrayObject *)out);
@@ -194,18 +198,19 @@ static PyObject *jacobian(PyObject *self, PyObject *const *args, Py_ssize_t coun
     PyArrayObject *q;
     PyObject *copy, *out = NULL;
     (void)self;
+    int asks = count == 4 || count == 5;
     /* Numbers first: their methods may change the arrays. */
-    double size = count == 4 ? PyFloat_AsDouble(args[2]) : 0.0;
-    int tool = count == 4 && !PyErr_Occurred() ? PyObject_IsTrue(args[3]) : 0;
-    const Chain *known = count == 4 && !PyErr_Occurred() ? asked(args[0], args[1], &q, &copy) : NULL;
+    double size = asks ? PyFloat_AsDouble(args[2]) : 0.0;
+    int tool = asks && !PyErr_Occurred() ? PyObject_IsTrue(args[3]) : 0;
+    const Chain *known = asks && !PyErr_Occurred() ? asked(args[0], args[1], &q, &copy) : NULL;
     if (!known) {
         if (!PyErr_Occurred())
-            PyErr_SetString(PyExc_TypeError, "jacobian(chain, q, size, tool)");
+            PyErr_SetString(PyExc_TypeError, "jacobian(chain, q, size, tool[, out])");
         return NULL;
     }
     const npy_intp shape[] = {6, known->n};
     npy_intp m = rows(q);
-    out = empty(q, 2, shape);
+    out = answer(count == 5 ? args[4] : NULL, q, 2, shape);
     if (out) {
         double *to = PyArray_DATA((PyArrayObject *)out);
         const double *from = PyArray_DATA(q);
@@ -275,8 +280,8 @@ static PyObject *instructions(PyObject *self, PyObject *const *args, Py_ssize_t 
             in_use = "base";
         }
 #ifdef ROBOKIN_AVX2
-        else if (name && !strcmp(name, "avx2") && __builtin_cpu_supports("avx2")) {
-            lanes = (Lanes){poses_avx2, frames_avx2, jacobians_avx2, errors_avx2};
+        else if (name && !strcmp(name, "avx2") && has_avx2()) {
+            lanes = avx2;
             in_use = "avx2";
             known = 1;
         }
@@ -294,11 +299,17 @@ static PyObject *instructions(PyObject *self, PyObject *const *args, Py_ssize_t 
 static PyMethodDef methods[] = {
     {"instructions", (PyCFunction)(void (*)(void))instructions, METH_FASTCALL, "instructions(name=None): the set in use"},
     {"chain", (PyCFunction)(void (*)(void))chain, METH_FASTCALL, "chain(constants, revolute, offsets): a chain's handle"},
-    {"pose", (PyCFunction)(void (*)(void))pose, METH_FASTCALL, "pose(chain, q): the tool's poses (..., 4, 4)"},
-    {"frames", (PyCFunction)(void (*)(void))frames, METH_FASTCALL, "frames(chain, q): (..., n + 1, 4, 4)"},
-    {"jacobian", (PyCFunction)(void (*)(void))jacobian, METH_FASTCALL, "jacobian(chain, q, size, tool): (..., 6, n)"},
+    {"pose", (PyCFunction)(void (*)(void))pose, METH_FASTCALL, "pose(chain, q[, out]): the tool's poses (..., 4, 4)"},
+    {"frames", (PyCFunction)(void (*)(void))frames, METH_FASTCALL, "frames(chain, q[, out]): (..., n + 1, 4, 4)"},
+    {"jacobian", (PyCFunction)(void (*)(void))jacobian, METH_FASTCALL, "jacobian(chain, q, size, tool[, out]): (..., 6, n)"},
     {"errors", (PyCFunction)(void (*)(void))errors, METH_FASTCALL, "errors(chain, T, q, size): (..., 6), (..., 6, n)"},
     {NULL, NULL, 0, NULL},
+};
+
+/* The methods of other files. */
+static PyMethodDef *const more_methods[] = {
+    number_text_methods,
+    NULL,
 };
 
 static struct PyModuleDef module = {PyModuleDef_HEAD_INIT, "_native", "The native kernel.", -1, methods,
@@ -312,15 +323,18 @@ PyMODINIT_FUNC PyInit__native(void) {
     }
     lanes = base;
 #ifdef ROBOKIN_AVX2
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx2")) {
-        lanes = (Lanes){poses_avx2, frames_avx2, jacobians_avx2, errors_avx2};
+    if (has_avx2()) {
+        lanes = avx2;
         in_use = "avx2";
     }
 #endif
     PyObject *made = PyModule_Create(&module);
+    for (int i = 0; made && more_methods[i]; i++)
+        if (PyModule_AddFunctions(made, more_methods[i]) < 0)
+            Py_CLEAR(made);
     if (made && (PyModule_AddIntConstant(made, "interface", INTERFACE) < 0 ||
-                 PyModule_AddIntConstant(made, "most_joints", MOST_JOINTS) < 0))
+                 PyModule_AddIntConstant(made, "most_joints", MOST_JOINTS) < 0 ||
+                 PyModule_AddStringConstant(made, "sources", ROBOKIN_SOURCES) < 0))
         Py_CLEAR(made);
     return made;
 }

@@ -1,0 +1,57 @@
+/* What the files of the module share: numpy's API, the arguments of calls, the set of instructions in use.
+
+   module.c takes the methods of the others: each file has a table of its own (`more_methods`).
+*/
+
+#ifndef ROBOKIN_MODULE_H
+#define ROBOKIN_MODULE_H
+
+#define PY_SSIZE_T_CLEAN
+#define Py_LIMITED_API 0x030a0000
+#define NPY_NO_DEPRECATED_API NPY_1_19_API_VERSION
+#define NPY_TARGET_VERSION NPY_1_19_API_VERSION
+
+/* numpy's table of functions is imported by module.c alone. */
+#define PY_ARRAY_UNIQUE_SYMBOL robokin_numpy
+#ifndef ROBOKIN_MODULE
+#define NO_IMPORT_ARRAY
+#endif
+
+#include <Python.h>
+#include <numpy/arrayobject.h>
+
+#include "chain.h"
+
+/* What is compiled once for each set of instructions. */
+typedef struct {
+    void (*poses)(const Chain *, const double *, ptrdiff_t, double *);
+    void (*frames)(const Chain *, const double *, ptrdiff_t, double *);
+    void (*jacobians)(const Chain *, const double *, ptrdiff_t, double, int, double *);
+    void (*errors)(const Chain *, const double *, const double *, ptrdiff_t, double, double *, double *);
+} Lanes;
+
+/* The set in use. */
+extern Lanes lanes;
+
+/* A call on fewer configurations keeps the interpreter's lock: giving it back takes longer than the work. */
+#define LONG 256
+
+/* A C-contiguous array of doubles (borrowed, or a new copy in *copy) with at least `least` dimensions. */
+PyArrayObject *doubles(PyObject *object, int least, PyObject **copy);
+
+/* The chain and the joint values (..., n) of a call. */
+const Chain *asked(PyObject *capsule, PyObject *object, PyArrayObject **q, PyObject **copy);
+
+/* A new array of q's leading shape and `more` dimensions. */
+PyObject *empty(PyArrayObject *q, int more, const npy_intp *shape);
+
+/* The number of rows of q. */
+npy_intp rows(PyArrayObject *q);
+
+/* Methods of other files. */
+extern PyMethodDef number_text_methods[];
+
+/* The name of a chain's capsule. */
+#define CHAIN "robokin.chain"
+
+#endif
