@@ -27,6 +27,8 @@ KERNEL = f"robokin/kernel/_native.{'pyd' if WINDOWS else 'abi3.so'}"
 # The sources that speak with Python, and those that do not.
 MODULE = [
     "module.c",
+    "closed_forms.c",
+    "elimination.c",
     "number_text.c",
 ]
 PLAIN = [

@@ -57,11 +57,16 @@ class Claims:
         """What the completeness of target i rests on, or why there is none."""
         if i in self.words:
             return self.words[i]
-        if self.basis[i] == COUNTED and self.branches and self.real[i] != self.N:
-            return f"all {self.N} branches of the closed form followed"
-        if self.basis[i] == COUNTED:
-            return f"{self.N} of {self.N} complex solutions found, {self.real[i]} real"
-        return self.otherwise
+        return (
+            counted_sentence(self.N, int(self.real[i]), self.branches) if self.basis[i] == COUNTED else self.otherwise
+        )
+
+
+def counted_sentence(N: int | None, real: int, branches: bool) -> str:
+    """What a list rests on that was counted: N solutions or branches, of which some are real."""
+    if branches and real != N:
+        return f"all {N} branches of the closed form followed"
+    return f"{N} of {N} complex solutions found, {real} real"
 
 
 def unclaimed(m: int, otherwise: str = SEARCHED) -> Claims:

@@ -12,6 +12,7 @@ line), the rest is analysed as the special arm that it then is.
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -24,7 +25,7 @@ from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.held_drive import drive_left
 from robokin.inverse.solution_names import branch_names
-from robokin.inverse.solutions import Arc, BatchResult, Family, Question, Result, Solution, named_later
+from robokin.inverse.solutions import Arc, BatchResult, Family, Question, Result, named_later
 from robokin.kernel.chain import row_standing
 from robokin.kernel.facts import fact
 from robokin.model import CoupledRobot, Robot
@@ -90,6 +91,8 @@ def _held_arms(robot: Robot) -> OrderedDict[tuple[tuple[int, float], ...], HeldA
 
 def check_held_limits(robot: Robot, arm: HeldArm) -> None:
     """Raise InputError where a held value is outside the joint's limits, or leaves no value to one that hangs on it."""
+    if arm.inside:
+        return
     for joint, value in zip(arm.joints.tolist(), arm.values.tolist(), strict=True):
         if not held_inside(robot, joint, value):
             low, high = robot.limits[joint].tolist()
@@ -154,7 +157,7 @@ def _checked(robot: Robot, hold: Mapping[int, float]) -> dict[int, float]:
             number = float(value)
         except (TypeError, ValueError):
             number = np.nan
-        if not np.isfinite(number):
+        if not math.isfinite(number):
             raise InputError(f"hold: found {value!r} for joint {joint}, expected a finite number [rad | m]")
         checked[int(joint)] = number
     if len(checked) == robot.n:
@@ -191,7 +194,14 @@ def _whole_result(arm: HeldArm, result: Result, named: Robot | None) -> Result:
             return [solution.branch for solution in shown]
         return _names(named, arm.whole(np.array([solution.q for solution in shown])))
 
-    whole = [_whole_solution(arm, solution, partial(_of, names, k)) for k, solution in enumerate(shown)]
+    values = arm.whole(np.array([solution.q for solution in shown]).reshape(-1, len(arm.free)))
+    whole = [
+        named_later(
+            partial(_of, names, k), q, solution.within_limits and arm.inside, solution.position_error,
+            solution.angle_error, arm.numbers(solution.free) if solution.free else (),
+        )
+        for k, (q, solution) in enumerate(zip(values, shown, strict=True))
+    ]  # fmt: skip
     solutions = tuple(whole[: len(result.solutions)])
     nearest = whole[-1] if result.nearest is not None else None
     families = tuple(_whole_family(arm, family) for family in result.families)
@@ -203,13 +213,6 @@ def _names(robot: Robot, q: Array) -> list[str]:
     if isinstance(robot, CoupledRobot):
         return branch_names(robot.free_motion, robot.drive.motions(q))
     return branch_names(robot, q)
-
-
-def _whole_solution(arm: HeldArm, solution: Solution, name: Callable[[], str]) -> Solution:
-    return named_later(
-        name, arm.whole(solution.q), solution.within_limits and arm.inside, solution.position_error,
-        solution.angle_error, arm.numbers(solution.free),
-    )  # fmt: skip
 
 
 def _whole_family(arm: HeldArm, family: Family) -> Family:

@@ -13,7 +13,6 @@ digits.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from functools import partial
 from itertools import pairwise
 from operator import itemgetter
@@ -22,31 +21,20 @@ from typing import Any
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.inverse.analysis import Analysis, General, analysis_of
-from robokin.inverse.claims import BASES, COUNTED, Claims
-from robokin.inverse.closed_form.straight_forms import StraightForm, straight_form
-from robokin.inverse.elimination.loop import ComplexCandidates, Loop
-from robokin.inverse.elimination.loop_newton import refine
-from robokin.inverse.full_turns import turning
+from robokin.inverse.elimination.loop import Loop
+from robokin.inverse.elimination.one_elimination import all_solutions
+from robokin.inverse.one_answer import OneAnswer
+from robokin.inverse.one_target_arm import OneTargetArm
 from robokin.inverse.self_motion.root_neighbours import NEIGHBOURS
-from robokin.inverse.solution_names import listed_names
-from robokin.inverse.solutions import Question, Result, named_later
 from robokin.inverse.verify import (
     CLOSE,
     CLOSES,
     EXACT_ENOUGH,
     HALF_TURN,
     KEY_CELLS,
-    NEWTON_STEPS,
     OFF_CENTRE,
-    Found,
 )  # fmt: skip
-from robokin.inverse.window import ROUNDED, complex_count
-from robokin.kernel.facts import fact
-from robokin.kernel.frames import program_to_tool
-from robokin.kernel.straight_line import StraightResiduals, straight_residuals
-from robokin.model import Robot
-from robokin.model.robot import LIMIT_TOLERANCE, tolerated
+from robokin.kernel.native_kernel import native
 from robokin.spatial.angles import TURN
 from robokin.spatial.transforms import FARTHEST
 
@@ -72,133 +60,17 @@ LEAST = HALF_TURN - math.pi
 Told = tuple[int, float, list[float], float, float]
 """The key for the order, the sum that tells configurations apart, joint values, distance and angle."""
 
-Proven = tuple[int, list[Told], ComplexCandidates | None]
-"""How many candidates there were; those that close; the complex ones where they are to be counted."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Bounds:
-    """A joint's limits as they count: low, high [rad], and whether a full turn may bring an angle into them."""
-
-    joint: int
-    low: float
-    high: float
-    beyond: bool
-
-
-@dataclass(frozen=True, eq=False)
-class OneTargetArm:
-    """What is known of an arm of six turning joints.
-
-    form: the code of its closed form, None where elimination solves it; offsets: (6) [rad]; size [m]; bounds: the
-    limits of joints that have some; turning: joint, low and high of those that may stand a full turn on within their
-    limits.
-    """
-
-    robot: Robot
-    analysis: Analysis
-    form: StraightForm | None
-    residuals: StraightResiduals
-    loop: Loop
-    offsets: tuple[float, ...]
-    size: float
-    bounds: tuple[_Bounds, ...]
-    turning: tuple[tuple[int, float, float], ...]
-
-
-@fact
-def one_target_arm(robot: Robot) -> OneTargetArm | None:
-    """What is known of a robot; None for one that blocks are left to solve."""
-    if type(robot) is not Robot or robot.n != 6 or not robot.revolute.all():
-        return None
-    analysis = analysis_of(robot)
-    if analysis.six is None or analysis.loop is None or not analysis.complete or analysis.redundancy:
-        return None
-    chain = analysis.six.chain
-    general = isinstance(analysis.solver, General)
-    form, residuals = straight_form(analysis.solver), straight_residuals(program_to_tool(chain))
-    if residuals is None or analysis.six.virtual or analysis.number is None or not (general or form is not None):
-        return None
-    low, high = tolerated(robot.limits)
-    bounds = tuple(
-        _Bounds(i, float(low[i]), float(high[i]), bool(low[i] < -np.pi or high[i] > np.pi))
-        for i in np.flatnonzero(np.isfinite(robot.limits).any(axis=1)).tolist()
-    )
-    wide = [(i, *robot.limits[i].tolist()) for i in turning(robot)]
-    whole = tuple(
-        (i, low - LIMIT_TOLERANCE, high + LIMIT_TOLERANCE)
-        for i, low, high in wide
-        if high - low + 4.0 * LIMIT_TOLERANCE >= TURN
-    )
-    offsets = tuple(chain.offsets.tolist())
-    return OneTargetArm(robot, analysis, form, residuals, analysis.loop, offsets, analysis.size, bounds, whole)
-
-
-@dataclass(eq=False)
-class OneAnswer:
-    """The solutions for one target, in lists.
-
-    tried: how many candidates there were; every: all solutions, their angles turned into the limits; inside: whether
-    each is within them; position, angle: what each lacks [m, rad]; rows: which are listed; within: how many were,
-    before the list was cut.
-    """
-
-    arm: OneTargetArm
-    tried: int
-    every: list[list[float]]
-    inside: list[bool]
-    position: list[float]
-    angle: list[float]
-    rows: list[int] = field(default_factory=list)
-    within: int = 0
-
-    def result(self, question: Question) -> Result:
-        """The answer for a question."""
-        rows, limits = self.rows, question.limits
-        everything = np.array(self.every)
-        q = everything[rows]
-        names = _Names(self.arm.robot, q, everything)
-        solutions = tuple(
-            named_later(partial(names.name, k), q[k], self.inside[row], self.position[row], self.angle[row], ())
-            for k, row in enumerate(rows)
-        )
-        count, analysis = len(self.every), self.arm.analysis
-        complete = self.within == len(rows)
-        counts = {"found": self.tried, "duplicates": 0, "closing": count}
-        if limits:
-            counts["within_limits"] = self.within
-        counts["listed"] = len(rows)
-        if limits:
-            counts["turns"] = sum(_equivalents(self.arm, self.every[row]) for row in rows)
-        claims = Claims(np.full(1, COUNTED, dtype=np.int8), analysis.number, np.array([count]))
-        claims.branches = self.arm.form is not None
-        return Result(
-            solutions, complete, analysis.method, counts=counts, postures=complete,
-            basis=BASES[COUNTED] if complete else None, certificate=claims.sentence(0), all_known=True,
-            question=question,
-        )  # fmt: skip
-
-
-class _Names:
-    """The names of the listed solutions q (k, 6) among all (m, 6), which are found when one is asked for."""
-
-    def __init__(self, robot: Robot, q: Array, every: Array) -> None:
-        self.asked: tuple[Robot, Array, Array] = robot, q, every
-        self.known: list[str] | None = None
-
-    def name(self, k: int) -> str:
-        """The name of solution k."""
-        if self.known is None:
-            robot, q, every = self.asked
-            index = np.zeros(len(every), dtype=np.intp)
-            self.known = listed_names(robot, q, index[: len(q)], (every, index))
-        return self.known[k]
+Proven = tuple[int, list[Told]]
+"""How many candidates there were; those that are solutions."""
 
 
 def plain_pose(T: Any) -> bool:
     """Whether something is a pose (4, 4) [m] as the blocks take it: an array that is rigid to the last digits."""
     if type(T) is not np.ndarray or T.shape != (4, 4) or T.dtype != np.float64:
         return False
+    if native is not None:
+        rigid: bool = native.rigid(T)
+        return rigid
     (a, b, c, x), (d, e, f, y), (g, h, i, z), bottom = T.tolist()
     error = max(
         abs(a * a + d * d + g * g - 1.0), abs(b * b + e * e + h * h - 1.0), abs(c * c + f * f + i * i - 1.0),
@@ -217,12 +89,15 @@ def solve_one(
     """The answer for a target T (4, 4) [m] and a wish near (6,) [rad], or None where it is left to the blocks."""
     if near is not None and not (limits or arm.robot.within_limits(near)):
         return None
+    if native is not None and arm.kernel is not None:
+        known = native.solution(arm.kernel, T, limits, near, arm.elimination)
+        return None if known is None else OneAnswer(arm, known[1], known[2], known[0], limits, most, near)
     closing = _closing(arm.loop, T)[None]
     target = T[:3].T.ravel().tolist()
     proven = _by_closed_form(arm, closing, target) if arm.form is not None else _by_elimination(arm, closing, target)
     if proven is None or not proven[1] or len(proven[1]) % 2:
         return None
-    tried, found, imaginary = proven
+    tried, found = proven
     sums = sorted([total for _, total, _, _, _ in found])
     if any(after - before < CLOSE for before, after in pairwise(sums)):
         return None  # two may be equal, or about to meet
@@ -231,24 +106,12 @@ def solve_one(
         return None
     every = [q for _, _, q, _, _ in found]
     position, angle = [one[3] for one in found], [one[4] for one in found]
-    if imaginary is not None:
-        listed = Found(np.zeros(len(found), dtype=np.intp), np.array(every), np.array(position), np.array(angle))
-        if complex_count(arm.analysis, closing, listed, imaginary)[0] != arm.analysis.number:
-            return None
     wish = None if near is None else near.tolist()
     inside = [_into_limits(arm, q, wish) for q in every]
-    rows = list(range(len(every)))
-    if limits:
-        if not all(within or _well_outside(arm, q) for within, q in zip(inside, every, strict=True)):
-            return None
-        rows = [row for row in rows if inside[row]]
-        if not rows:
-            return None
-    if wish is not None:
-        rows.sort(key=[max(abs(a - b) for a, b in zip(q, wish, strict=True)) for q in every].__getitem__)
-    answer = OneAnswer(arm, tried, every, inside, position, angle)
-    answer.rows, answer.within = rows if most is None else rows[:most], len(rows)
-    return answer
+    if limits and not (any(inside) and all(map(partial(_well_placed, arm), inside, every))):
+        return None
+    table = np.array([(*q, *rest) for q, *rest in zip(every, position, angle, inside, strict=True)])
+    return OneAnswer(arm, np.array(T), tried, table, limits, most, near)
 
 
 def _closing(loop: Loop, T: Array) -> Array:
@@ -273,29 +136,20 @@ def _by_closed_form(arm: OneTargetArm, closing: Array, target: list[float]) -> P
     off = arm.residuals(rows, target)
     if not all(position / size <= EXACT_ENOUGH and angle <= EXACT_ENOUGH for position, angle in off):
         return None
-    return len(leaves), [_told(q, *error) for q, error in zip(rows, off, strict=True)], None
+    return len(leaves), [_told(q, *error) for q, error in zip(rows, off, strict=True)]
 
 
 def _by_elimination(arm: OneTargetArm, closing: Array, target: list[float]) -> Proven | None:
-    """The configurations of the eliminations' real roots that close, polished, and the complex roots."""
-    candidates, imaginary = arm.analysis.solver.first.all_candidates(closing)
-    size, offsets = arm.size, np.array(arm.offsets)
-    rows = (candidates.values - offsets).tolist()
-    found = []
+    """The configurations of the elimination's real roots, or None where not all N complex solutions are among them."""
+    assert arm.analysis.number is not None
+    found = all_solutions(arm.analysis.solver.first, arm.loop, closing, arm.analysis.number)
+    if found is None:
+        return None
+    rows = (found[1] - arm.offsets).tolist()
     off = arm.residuals(rows, target)
-    rough = [k for k, (position, angle) in enumerate(off) if not (position / size <= ROUNDED and angle <= ROUNDED)]
-    if rough:
-        index = np.zeros(len(rough), dtype=np.intp)
-        polished, _, _ = refine(arm.loop, closing, index, candidates.values[rough], NEWTON_STEPS)
-        if not np.isfinite(polished).all():
-            return None
-        better = (polished - offsets).tolist()
-        for k, q, error in zip(rough, better, arm.residuals(better, target), strict=True):
-            rows[k], off[k] = q, error
-    for row, (position, angle) in zip(rows, off, strict=True):
-        if position <= CLOSES * size and angle <= CLOSES:
-            found.append(_told(row, position, angle))
-    return len(rows), found, imaginary
+    if not all(position <= CLOSES * arm.size and angle <= CLOSES for position, angle in off):
+        return None
+    return found[0], [_told(q, *error) for q, error in zip(rows, off, strict=True)]
 
 
 def _told(values: list[float], position: float, angle: float) -> Told:
@@ -336,8 +190,10 @@ def _into_limits(arm: OneTargetArm, q: list[float], wish: list[float] | None) ->
     return inside
 
 
-def _well_outside(arm: OneTargetArm, q: list[float]) -> bool:
-    """Whether some angle is farther outside its limits than what may stand for a solution inside."""
+def _well_placed(arm: OneTargetArm, inside: bool, q: list[float]) -> bool:
+    """Whether q is within the limits, or some angle farther outside than what may stand for a solution inside."""
+    if inside:
+        return True
     for bounds in arm.bounds:
         value = q[bounds.joint]
         if not bounds.low <= value <= bounds.high:
@@ -347,12 +203,3 @@ def _well_outside(arm: OneTargetArm, q: list[float]) -> bool:
             if away > 2.0 * NEIGHBOURS:
                 return True
     return False
-
-
-def _equivalents(arm: OneTargetArm, q: list[float]) -> int:
-    """How many configurations within the limits q is equivalent to, itself included."""
-    count = 1
-    for joint, low, high in arm.turning:
-        least = min(math.ceil((low - q[joint]) / TURN), 0)
-        count *= max(math.floor((high - q[joint]) / TURN), 0) - least + 1
-    return count

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.kernel.joint_axes import Axes, dot
+from robokin.kernel.joint_axes import Axes, cross, dot
+from robokin.kernel.straight_line import Term, written
 
 Quantity = Callable[[Axes], Array]
 Point = Callable[[Axes], Array]
@@ -42,6 +43,14 @@ class Sign:
         return np.asarray(self.quantity(axes) >= -UNDECIDED)
 
 
+def signed(values: Array, side: Array) -> Array:
+    """The values (s,) where a side (s,) is not negative, else the opposite."""
+    if values.dtype == object:
+        terms = zip(values, side, strict=True)
+        return np.array([one * Term(one.lines, f"copysign(1.0, {written(other)})") for one, other in terms])
+    return np.where(side >= 0.0, 1.0, -1.0) * values
+
+
 def side_of(part: str, quantity: Quantity) -> Sign:
     """The sign of a quantity by which a part is up or down, or else right or left."""
     yes, no = SIDES.get(part, ("right", "left"))
@@ -70,7 +79,7 @@ def lever_area(i: int, j: int, point: Point) -> Quantity:
 
     def area(axes: Axes) -> Array:
         w = point(axes)
-        return dot(np.cross(w - axes.foot(i, w), w - axes.foot(j, w)), axes.z[:, i])
+        return dot(cross(w - axes.foot(i, w), w - axes.foot(j, w)), axes.z[:, i])
 
     return area
 
@@ -80,7 +89,7 @@ def area_of(i: int, j: int, k: int) -> Quantity:
 
     def area(axes: Axes) -> Array:
         p, r, s = (axes.foot(joint, axes.tip) for joint in (i, j, k))
-        return dot(np.cross(r - p, s - r), axes.z[:, i])
+        return dot(cross(r - p, s - r), axes.z[:, i])
 
     return area
 
@@ -92,4 +101,4 @@ def multiple(factor: float, quantity: Quantity) -> Quantity:
 
 def mirrored(quantity: Quantity, side: Quantity) -> Quantity:
     """The quantity where the side is not negative, else the opposite: up and down change places behind the axis."""
-    return lambda axes: np.where(side(axes) >= -UNDECIDED, 1.0, -1.0) * quantity(axes)
+    return lambda axes: signed(quantity(axes), side(axes) + UNDECIDED)

@@ -57,7 +57,7 @@ from robokin.inverse.posture_signs import (
     turn_of,
 )
 from robokin.kernel.chain import Chain, chain_size
-from robokin.kernel.joint_axes import NEARLY, Axes, dot
+from robokin.kernel.joint_axes import NEARLY, Axes, cross, dot
 
 UPRIGHT = 0.05
 """A reach in the arm's size that is none: the arm stands upright. Calibration moves it by less than a hundredth."""
@@ -184,7 +184,7 @@ def _direction(arm: _Arm, first: int, i: int, j: int, k: int) -> tuple[Quantity 
     if arm.axes.parallel(i, j):
 
         def across(axes: Axes) -> Array:
-            return dot(np.cross(axes.z[:, i], axes.foot(j, axes.o[:, i]) - axes.o[:, i]), axes.z[:, first])
+            return dot(cross(axes.z[:, i], axes.foot(j, axes.o[:, i]) - axes.o[:, i]), axes.z[:, first])
 
         return across, _turn_between(part, first, h, i, k)
     return None

@@ -26,11 +26,16 @@ import numpy as np
 
 from robokin.arrays import Array, Index
 from robokin.inverse.analysis import Window, analysis_of, window_chain
+from robokin.inverse.posture_code import posture_code
 from robokin.inverse.postures import Postures, postures_of
 from robokin.inverse.verify import SAME, wrapped
 from robokin.kernel.chain import chain_of
 from robokin.kernel.facts import fact
+from robokin.kernel.native_kernel import native
 from robokin.model import Robot
+
+FEW = 100
+"""Numbers of which a set is made faster than they are sorted."""
 
 HELD = 1e-6
 """Held joints that differ by less [rad | size] have one value."""
@@ -46,19 +51,36 @@ def branch_names(robot: Robot, q: Array, index: Index | None = None) -> list[str
         return []
     window, postures = _postures(robot)
     part = slice(window.first, window.last)
-    axes = postures.axes(np.asarray((q * robot.senses)[:, part], dtype=np.float64))
-    # A bit for each sign: configurations with one code have one name.
-    code = np.zeros(len(q), dtype=np.intp)
-    for bit, sign in enumerate(postures.signs):
-        code |= sign.holds(axes).astype(np.intp) << bit
+    code = _codes(postures, np.asarray((q * robot.senses)[:, part], dtype=np.float64))
     numbers = np.zeros(len(q), dtype=np.intp)
-    if index is not None:
+    if index is not None and not _told_apart(index, code, postures):
         numbers = _numbers(robot, q, index, code, part, postures)
     names: dict[tuple[int, int], str] = {}
     for key in set(zip(code.tolist(), numbers.tolist(), strict=True)):
         words = [sign.word(bool(key[0] >> bit & 1)) for bit, sign in enumerate(postures.signs)]
         names[key] = ", ".join([*words, f"number {key[1]}"] if key[1] else words)
     return [names[key] for key in zip(code.tolist(), numbers.tolist(), strict=True)]
+
+
+def _codes(postures: Postures, q: Array) -> Index:
+    """(s,) a bit for each sign of configurations q (s, n): those with one code have one name."""
+    known = posture_code(postures)
+    if native is not None and known is not None:
+        bits: Index = native.sides(known, q)
+        return bits
+    axes = postures.axes(q)
+    code = np.zeros(len(q), dtype=np.intp)
+    for bit, sign in enumerate(postures.signs):
+        code |= sign.holds(axes).astype(np.intp) << bit
+    return code
+
+
+def _told_apart(index: Index, code: Index, postures: Postures) -> bool:
+    """Whether the codes of each target's configurations differ, so that none needs a number."""
+    if postures.numbered:
+        return False
+    keys = index << len(postures.signs) | code
+    return len(np.unique(keys)) == len(keys) if len(keys) > FEW else len(set(keys.tolist())) == len(keys)
 
 
 def listed_names(robot: Robot, q: Array, index: Index, every: tuple[Array, Index]) -> list[str]:

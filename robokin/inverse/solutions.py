@@ -54,9 +54,9 @@ def named_later(
 ) -> Solution:
     """A solution whose branch is worked out when it is first asked for."""
     one = object.__new__(Solution)
-    one.__dict__.update(
-        q=q, within_limits=within_limits, position_error=position, angle_error=angle, free=free, _name=name
-    )
+    known = one.__dict__
+    known["q"], known["within_limits"], known["free"], known["_name"] = q, within_limits, free, name
+    known["position_error"], known["angle_error"] = position, angle
     return one
 
 

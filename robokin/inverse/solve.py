@@ -13,15 +13,17 @@ from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_flag, expect_kind, expect_numbers, expect_whole
 from robokin.inverse.analysis import Task, analysis_of
+from robokin.inverse.answered_batch import answered_batch
 from robokin.inverse.coupled_joints import solve_coupled
 from robokin.inverse.full_turns import check_turns, with_full_turns, with_turn_counts
-from robokin.inverse.hold import check_held_limits, held_arm, own_near, whole_result, with_held_joints
-from robokin.inverse.one_target import one_target_arm, plain_pose, solve_one
-from robokin.inverse.single_answer import FAR, result_of
+from robokin.inverse.hold import HeldArm, check_held_limits, held_arm, own_near, whole_result, with_held_joints
+from robokin.inverse.one_answer import OneAnswer
+from robokin.inverse.one_target import plain_pose, solve_one
+from robokin.inverse.one_target_arm import one_target_arm
 from robokin.inverse.solutions import BatchResult, Question, Result, UnmadeResult
-from robokin.inverse.solve_blocks import BLOCK
-from robokin.inverse.target_block import Method, Request, TargetBlock
-from robokin.jobs.ordered_map import MOST_CORES, ordered_map
+from robokin.inverse.target_block import Method, Request
+from robokin.jobs.ordered_map import MOST_CORES
+from robokin.kernel.native_kernel import native
 from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.spatial import nearest_rotation, rotation_error, transform
 from robokin.spatial.rotations import DIGITS_LOST
@@ -86,13 +88,20 @@ def _one_target(
     hold: Mapping[int, float] | None,
 ) -> Result | None:
     """The answer for one pose where it can be had without the blocks; None where not, and for what is no question."""
-    if not isinstance(robot, Robot) or type(limits) is not bool or not plain_pose(T):
+    if not isinstance(robot, Robot) or type(limits) is not bool:
         return None
     if type(method) is not str or method not in ("auto", "analytic") or type(task) is not str or task != "pose":
         return None
     if type(seed) is not int or seed < 0 or not (most is None or (type(most) is int and most >= 1)):
         return None
-    if isinstance(robot, CoupledRobot) or not (hold is None or isinstance(hold, Mapping)):
+    if near is None and hold is None:
+        # The kernel looks at the pose itself.
+        arm = one_target_arm(robot)
+        if arm is not None and (arm.kernel is not None or plain_pose(T)):
+            answer = solve_one(arm, T, limits, most)
+            return None if answer is None else UnmadeResult(partial(_made, robot, None, answer, {}))
+        return None
+    if not plain_pose(T) or isinstance(robot, CoupledRobot) or not (hold is None or isinstance(hold, Mapping)):
         return None
     wish = _wished(robot, near)
     part = None
@@ -102,16 +111,14 @@ def _one_target(
             check_held_limits(robot, part)
         wish = own_near(part, wish)
     arm = one_target_arm(robot if part is None else part.part)
-    if arm is None:
-        return None
-    target = np.array(T)
-    answer = solve_one(arm, target, limits, most, wish)
-    if answer is None:
-        return None
-    question = Question(robot, target, task, limits, dict(hold or {}))
-    if part is None:
-        return UnmadeResult(partial(answer.result, question))
-    return UnmadeResult(partial(whole_result, robot, part, answer.result, question))
+    answer = None if arm is None else solve_one(arm, T, limits, most, wish)
+    return None if answer is None else UnmadeResult(partial(_made, robot, part, answer, dict(hold or {})))
+
+
+def _made(robot: Robot, part: HeldArm | None, answer: OneAnswer, hold: dict[int, float]) -> Result:
+    """The result of an answer, when it is looked at."""
+    question = Question(robot, answer.T, "pose", answer.limits, hold)
+    return answer.result(question) if part is None else whole_result(robot, part, answer.result, question)
 
 
 def solve_many(
@@ -164,11 +171,7 @@ def solve_many(
     request = asked = replace(_request(robot, limits, near, method, task, most, seed), motions=motions)
     if turns and not (asked.analysis.redundancy or asked.analysis.solver is None):
         request = replace(asked, most=None)  # what is cut is the list with the full turns in it
-    blocks = [poses[start : start + BLOCK] for start in range(0, len(poses), BLOCK)]
-    answers = list(ordered_map(partial(TargetBlock, request), blocks, cores))
-    for answer in answers:
-        answer.request = request
-    batch = _batch(request, answers)
+    batch = answered_batch(request, poses, cores)
     if turns:
         return with_full_turns(robot, batch, poses, task, asked.near, asked.analysis.size, most)
     return with_turn_counts(robot, batch) if limits else batch
@@ -181,6 +184,8 @@ def target_poses(T: ArrayLike) -> Array:
     what are no rigid transforms, saying how far off.
     """
     poses = np.array(expect_numbers(T, "T", "an array of numbers (4, 4) or (m, 4, 4)"))
+    if native is not None and poses.ndim in (2, 3) and poses.shape[-2:] == (4, 4) and native.rigid(poses):
+        return poses
     if poses.ndim not in (2, 3) or poses.shape[-2:] != (4, 4):
         raise InputError(f"found a target of shape {poses.shape}, expected (4, 4) or (m, 4, 4)")
     if not np.all(np.isfinite(poses)):
@@ -216,47 +221,3 @@ def _request(
     if robot.n == 0:
         raise InputError(f"{robot.name} has no joints, expected a robot that can move")
     return Request(robot, analysis_of(robot, task), limits, near, method, most, seed)
-
-
-def _batch(request: Request, answers: list[TargetBlock]) -> BatchResult:
-    n = request.robot.n
-    counts = np.concatenate([block.count for block in answers]) if answers else np.zeros(0, dtype=np.intp)
-    most = int(counts.max(initial=0))
-    q = np.full((len(counts), most, n), np.nan)
-    position, angle = np.full((len(counts), most), np.nan), np.full((len(counts), most), np.nan)
-    inside = np.zeros((len(counts), most), dtype=bool)
-    start = 0
-    for block in answers:
-        found, end = block.found, start + len(block.T)
-        if np.all(block.count == most):
-            shape = (len(block.T), most)
-            q[start:end] = found.q.T.reshape(n, *shape).transpose(1, 2, 0)
-            position[start:end], angle[start:end] = found.position.reshape(shape), found.angle.reshape(shape)
-            inside[start:end] = block.inside.reshape(shape)
-        else:
-            place = np.arange(len(found)) - np.repeat(np.cumsum(block.count) - block.count, block.count)
-            row = found.index + start
-            q[row, place], position[row, place], angle[row, place] = found.q, found.position, found.angle
-            inside[row, place] = block.inside
-        start = end
-
-    def single(i: int) -> Result:
-        block = answers[i // BLOCK]
-        return result_of(request, block, i % BLOCK)
-
-    def reason(i: int) -> str | None:
-        block, k = answers[i // BLOCK], i % BLOCK
-        # That the limits are in the way, or the target far off, is known without a search for what is nearest.
-        if block.closing[k] and not block.count[k]:
-            return block.outside(k)
-        return FAR if block.beyond[k] else single(i).reason
-
-    def branches() -> list[str]:
-        return [name for block in answers for name in block.names]
-
-    analysis = request.analysis
-    method = "numeric" if request.method == "numeric" else analysis.method
-    complete = not analysis.idle and all(
-        bool(np.all(block.claims.basis > 0) and not block.cut.any()) for block in answers
-    )
-    return BatchResult(q, counts, position, angle, inside, complete, method, single, branches, reason)

@@ -135,7 +135,7 @@ class TargetBlock:
             later = None if later is None else later[inside]
             found, inside = found.pick(inside), inside[inside]
         self.within = np.bincount(found.index, minlength=len(T))
-        self.found, self.inside = _ordered(request, found, inside, later)
+        self.found, self.inside = in_order(request, found, inside, later)
         whole = len(self.found) == len(found)
         self.count = self.within if whole else np.bincount(self.found.index, minlength=len(T))
         self.cut = self.within > self.count
@@ -171,6 +171,23 @@ class TargetBlock:
         q = np.tile(request.middle, (len(found), 1))
         q[:, moving] = found.q
         return Found(found.index, q, found.position, found.angle)
+
+    def padded(self, most: int) -> tuple[Array, Array, Array, Flags]:
+        """What is listed in tables of `most` rows a target: joint values (m, most, n), distances, angles, inside.
+
+        (m, most) each; rows beyond a target's number are NaN and not inside.
+        """
+        found, m = self.found, len(self.T)
+        listed = np.arange(most) < self.count[:, None]
+        if listed.all():
+            shape = m, most
+            q = found.q.reshape(*shape, found.q.shape[1])
+            return q, found.position.reshape(shape), found.angle.reshape(shape), self.inside.reshape(shape)
+        q = np.full((m, most, found.q.shape[1]), np.nan)
+        position, angle = np.full((m, most), np.nan), np.full((m, most), np.nan)
+        inside = np.zeros((m, most), dtype=bool)
+        q[listed], position[listed], angle[listed], inside[listed] = found.q, found.position, found.angle, self.inside
+        return q, position, angle, inside
 
     @cached_property
     def names(self) -> list[str]:
@@ -281,7 +298,7 @@ def _limited(request: Request, found: Found) -> tuple[Found, Flags]:
     return Found(found.index, q, found.position, found.angle), inside
 
 
-def _ordered(request: Request, found: Found, inside: Flags, later: Index | None) -> tuple[Found, Flags]:
+def in_order(request: Request, found: Found, inside: Flags, later: Index | None) -> tuple[Found, Flags]:
     """By target, then by the move from `near` if there is one, and cut to the number asked for.
 
     Of infinitely many some well spread ones; without `near` each is the farthest from those before it. later: (s,)

@@ -67,7 +67,8 @@ class Found:
             if which.all():
                 return self
             which = np.flatnonzero(which)
-        q = self.q.T.take(which, axis=1).T
+        # Along what lies together in memory: joint by joint, or configuration by configuration.
+        q = self.q.take(which, axis=0) if self.q.flags.c_contiguous else self.q.T.take(which, axis=1).T
         return Found(self.index.take(which), q, self.position.take(which), self.angle.take(which))
 
     def numbered(self, targets: Index) -> Found:

@@ -18,9 +18,10 @@ from robokin.inverse.analysis import Analysis, General
 from robokin.inverse.elimination.complex_newton import complex_refine, on_the_way_out, regular, regular_and_distinct
 from robokin.inverse.elimination.loop import ComplexCandidates
 from robokin.inverse.elimination.loop_newton import determinants
+from robokin.inverse.elimination.native_elimination import native_elimination
 from robokin.inverse.elimination.splits import REAL
 from robokin.inverse.numeric.least_squares import descend
-from robokin.inverse.verify import CLOSES, VIRTUAL, Found, closing_distances, distinct, verified
+from robokin.inverse.verify import CLOSES, VIRTUAL, Found, closing_distances, distinct, merged, verified
 from robokin.kernel.chain import Chain
 from robokin.kernel.ranks import RANK
 from robokin.kernel.residual import TargetPoses, error_and_jacobian
@@ -61,30 +62,65 @@ class Doubt:
 
 def solve_window(analysis: Analysis, T: Array, count: bool = True) -> tuple[Found, Doubt]:
     """Solutions of the window for its own targets; q: (s, window). Without `count` nothing is vouched for."""
+    six, solver = analysis.six, analysis.solver
+    assert six is not None
+    if isinstance(solver, General):
+        found, doubt = _eliminated(analysis, T, count)
+    else:
+        found, doubt = _by_closed_form(analysis, T)
+    if six.virtual:
+        found = _own_joints(analysis, T, found)
+    return found, doubt
+
+
+def _by_closed_form(analysis: Analysis, T: Array) -> tuple[Found, Doubt]:
+    """`solve_window` of all six joints of a closed form."""
     six, loop, solver = analysis.six, analysis.loop, analysis.solver
     assert six is not None
     assert loop is not None
     closing = loop.closing(T)
-    poses = TargetPoses(six.chain, T)
-    if isinstance(solver, General):
-        candidates, imaginary = solver.first.all_candidates(closing, complex_too=count)
-        found = distinct(verified(loop, six.chain, poses, closing, candidates, ROUNDED), six.chain.revolute, loop.size)
-        tried = np.bincount(candidates.index, minlength=len(T))
-        doubt = Doubt(np.ones(len(T), dtype=bool), np.zeros(len(T), dtype=bool), tried)
-        if count:
-            doubt.certain = complex_count(analysis, closing, found, imaginary) != analysis.number
-    else:
-        candidates = solver.candidates(closing)
-        found = verified(loop, six.chain, poses, closing, candidates)
-        assert candidates.loose is not None
-        assert candidates.near is not None
-        tried = np.bincount(candidates.index, minlength=len(T))
-        # A short lever decides how a joint stands: rounding of it may put what is beyond out of reach.
-        unsure = candidates.near if candidates.few is None else candidates.near & ~candidates.few
-        lost = unsure & (tried < (candidates.leaves or 0))
-        doubt = Doubt(candidates.loose | lost, candidates.near, tried)
-    if six.virtual:
-        found = _own_joints(analysis, T, found)
+    candidates = solver.candidates(closing)
+    found = verified(loop, six.chain, TargetPoses(six.chain, T), closing, candidates)
+    assert candidates.loose is not None
+    assert candidates.near is not None
+    tried = np.bincount(candidates.index, minlength=len(T))
+    # A short lever decides how a joint stands: rounding of it may put what is beyond out of reach.
+    unsure = candidates.near if candidates.few is None else candidates.near & ~candidates.few
+    lost = unsure & (tried < (candidates.leaves or 0))
+    return found, Doubt(candidates.loose | lost, candidates.near, tried)
+
+
+def _eliminated(analysis: Analysis, T: Array, count: bool) -> tuple[Found, Doubt]:
+    """`solve_window` of all six joints by elimination: in the native kernel, and by Python what that does not prove."""
+    assert analysis.six is not None
+    assert analysis.loop is not None
+    known = native_elimination(analysis.solver.first, analysis.loop, analysis.six.chain, analysis.number)
+    if known is None:
+        return _by_elimination(analysis, T, count)
+    index, q, position, angle, tried, whole = known.many(T)
+    found, doubt = Found(index, q, position, angle), Doubt(~whole, np.zeros(len(T), dtype=bool), tried)
+    rest = np.flatnonzero(~whole)
+    if not len(rest):
+        return found, doubt
+    more, again = _by_elimination(analysis, T[rest], count)
+    doubt.certain[rest], doubt.candidates[rest] = again.certain, again.candidates
+    both = merged(found.pick(whole[index]), Found(rest[more.index], more.q, more.position, more.angle))
+    return both.pick(np.argsort(both.index, kind="stable")), doubt
+
+
+def _by_elimination(analysis: Analysis, T: Array, count: bool) -> tuple[Found, Doubt]:
+    """The same in Python."""
+    six, loop, solver = analysis.six, analysis.loop, analysis.solver
+    assert six is not None
+    assert loop is not None
+    closing = loop.closing(T)
+    candidates, imaginary = solver.first.all_candidates(closing, complex_too=count)
+    found = verified(loop, six.chain, TargetPoses(six.chain, T), closing, candidates, ROUNDED)
+    found = distinct(found, six.chain.revolute, loop.size)
+    tried = np.bincount(candidates.index, minlength=len(T))
+    doubt = Doubt(np.ones(len(T), dtype=bool), np.zeros(len(T), dtype=bool), tried)
+    if count:
+        doubt.certain = complex_count(analysis, closing, found, imaginary) != analysis.number
     return found, doubt
 
 

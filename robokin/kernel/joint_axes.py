@@ -5,15 +5,21 @@ Nothing here depends on where on its axis a joint's frame stands.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from robokin.arrays import Array
 from robokin.kernel.chain import Chain
 from robokin.kernel.frames import frames
+from robokin.kernel.straight_line import Term
 
 NEARLY = 0.01
 """Sine of an angle, or a distance in the arm's size, below which axes count as parallel or as meeting: calibration
 changes tables by less, and arms that are designed with an offset have a greater one."""
+
+
+TINY = float(np.finfo(np.float64).tiny)
 
 
 class Axes:
@@ -31,13 +37,21 @@ class Axes:
         self.turns = chain.revolute
         self._meetings: dict[tuple[int, int], Array] = {}
 
+    @classmethod
+    def of_terms(cls, chain: Chain, z: list[list[Term]], o: list[list[Term]], tip: list[Term]) -> Axes:
+        """Axes (1, n, 3) whose numbers are terms of code, in the arm's size."""
+        axes = object.__new__(cls)
+        axes.z, axes.o, axes.tip = (np.array([part], dtype=object) for part in (z, o, tip))
+        axes.turns, axes._meetings = chain.revolute, {}
+        return axes
+
     def across(self, i: int, j: int) -> Array:
         """z_i × z_j: (s, 3)."""
-        return np.cross(self.z[:, i], self.z[:, j])
+        return cross(self.z[:, i], self.z[:, j])
 
     def velocity(self, i: int, w: Array) -> Array:
         """(s, 3) the velocity that joint i gives to points w: (s, 3)."""
-        return np.cross(self.z[:, i], w - self.o[:, i]) if self.turns[i] else self.z[:, i]
+        return cross(self.z[:, i], w - self.o[:, i]) if self.turns[i] else self.z[:, i]
 
     def foot(self, i: int, w: Array) -> Array:
         """(s, 3) the point of axis i nearest to w: (s, 3)."""
@@ -75,9 +89,28 @@ def nearest_point(z0: Array, o0: Array, z1: Array, o1: Array) -> Array:
 
     z: (..., 3) directions, o: (..., 3) points on the lines.
     """
-    normal = np.cross(z0, z1)
-    along = dot(np.cross(o1 - o0, z0), normal) / np.maximum(dot(normal, normal), np.finfo(float).tiny)
+    normal = cross(z0, z1)
+    along = dot(cross(o1 - o0, z0), normal) / at_least(dot(normal, normal), TINY)
     return np.asarray(o1 + along[..., None] * z1)
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Products (..., 3) of vectors (..., 3): a sixth of the time that numpy's takes for a handful."""
+    x, y, z = a[..., 0], a[..., 1], a[..., 2]
+    u, v, w = b[..., 0], b[..., 1], b[..., 2]
+    out = np.empty(np.broadcast_shapes(a.shape, b.shape), dtype=a.dtype)  # terms of code are objects
+    out[..., 0] = y * w - z * v
+    out[..., 1] = z * u - x * w
+    out[..., 2] = x * v - y * u
+    return out
+
+
+def at_least(values: Array, least: float) -> Array:
+    """The values, or what they are to be at least."""
+    if values.dtype == object:
+        terms: list[Any] = values.ravel().tolist()
+        return np.array([Term(one.lines, f"max({one.name}, {least!r})") for one in terms]).reshape(values.shape)
+    return np.maximum(values, least)
 
 
 def dot(a: Array, b: Array) -> Array:

@@ -90,6 +90,10 @@ class Term:
         """A difference from a number."""
         return Term(self.lines, f"{written(other)} - {self.name}")
 
+    def __truediv__(self, other: Term | float) -> Term:
+        """A quotient."""
+        return Term(self.lines, f"{self.name} / {written(other)}")
+
     def __neg__(self) -> Term:
         """The term with the other sign."""
         return Term(self.lines, f"-{self.name}")

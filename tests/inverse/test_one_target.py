@@ -13,7 +13,8 @@ from library_entries import entry, names_of
 
 import robokin
 from robokin.inverse import solve
-from robokin.inverse.one_target import one_target_arm, plain_pose, solve_one
+from robokin.inverse.one_target import plain_pose, solve_one
+from robokin.inverse.one_target_arm import one_target_arm
 from robokin.inverse.solutions import Result
 from robokin.inverse.solve import solve_many, target_poses
 from robokin.kernel.facts import NAME
@@ -50,12 +51,17 @@ def assert_same(one, other):
     assert len(one) == len(other)
     assert not one.families
     assert not other.families
+    # Roots of an elimination are polished, by steps that do not come to the same last digits everywhere.
+    polished = one.method == "elimination"
     for mine, theirs in zip(one, other, strict=True):
-        assert mine.q.tobytes() == theirs.q.tobytes()
+        if polished:
+            np.testing.assert_allclose(mine.q, theirs.q, rtol=0, atol=1e-9)
+        else:
+            assert mine.q.tobytes() == theirs.q.tobytes()
         assert (mine.branch, mine.within_limits, mine.free) == (theirs.branch, theirs.within_limits, theirs.free)
         # Of these the blocks' own last digits depend on how many are summed at once.
-        assert mine.position_error == pytest.approx(theirs.position_error, abs=1e-15)
-        assert mine.angle_error == pytest.approx(theirs.angle_error, abs=1e-15)
+        assert mine.position_error == pytest.approx(theirs.position_error, abs=1e-13 if polished else 1e-15)
+        assert mine.angle_error == pytest.approx(theirs.angle_error, abs=1e-13 if polished else 1e-15)
 
 
 def test_the_blocks_say_the_same(rng):

@@ -10,12 +10,12 @@ import pytest
 
 import robokin
 from robokin.errors import InputError
-from robokin.inverse import solve
+from robokin.inverse import answered_batch
 
 
 @pytest.fixture
 def small_blocks(monkeypatch):
-    monkeypatch.setattr(solve, "BLOCK", 8)
+    monkeypatch.setattr(answered_batch, "BLOCK", 8)
 
 
 @pytest.mark.parametrize(

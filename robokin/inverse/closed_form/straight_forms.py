@@ -19,12 +19,22 @@ from typing import Any, cast
 import numpy as np
 
 from robokin.inverse.closed_form.backwards import backwards_closing
+from robokin.inverse.closed_form.form_code import (
+    FormCode,
+    NoCodeError,
+    in_two_turns,
+    linear_turn,
+    quadratic,
+    root_of,
+    says_something,
+    turning_onto,
+)  # fmt: skip
 from robokin.inverse.closed_form.gather import LEVER
 from robokin.inverse.closed_form.joint_functions import LOOSE, Form, Prismatic, Revolute, combined, parallel_gradient
 from robokin.inverse.closed_form.spherical_wrist import SphericalTriple, along_gradient, sum_of_products
 from robokin.inverse.closed_form.three_parallel_axes import ThreeParallel
-from robokin.inverse.closed_form.trigonometry import CLAMP, FREE, Turn, normalized, turned
-from robokin.inverse.closed_form.turns import lever_of, right_angled, zeroed
+from robokin.inverse.closed_form.trigonometry import CLAMP, FREE, Turn, turned
+from robokin.inverse.closed_form.turns import lever_of, right_angled
 from robokin.kernel.entries import (
     Entry,
     EntryFrame,
@@ -36,7 +46,6 @@ from robokin.kernel.entries import (
     minus,
     moved,
     plus,
-    root,
     times,
     transposed,
 )
@@ -47,68 +56,15 @@ StraightForm = Callable[[list[float]], Leaves | None]
 """Joint values (6) [rad] of each real root, for the first three rows of L6 in reading order; None for no answer."""
 
 
-class NoCodeError(Exception):
-    """What an arm asks for is left to the arrays."""
-
-
-class _Code(list[tuple[str, str]]):
-    """Lines of code: what is assigned to and its source, or nothing and a statement."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.depth = 1
-        self.text: list[str] = []
-        self.pairs: list[tuple[str, str]] = []
-
-    def append(self, line: tuple[str, str]) -> None:
-        """One more line, as deep as the loops are."""
-        super().append(line)
-        name, source = line
-        self.text.append("    " * self.depth + (f"{name} = {source}" if name else source))
-
-    def term(self, source: str) -> Entry:
-        """What a source comes to."""
-        return cast(Entry, Term(self, source))
-
-    def say(self, statement: str) -> None:
-        """A statement."""
-        self.append(("", statement))
-
-    def unless(self, condition: str) -> None:
-        """No answer unless a condition holds."""
-        self.say(f"if not {condition}: return None")
-
-    def real(self, condition: str) -> None:
-        """Only roots for which a condition holds."""
-        self.say(f"if not {condition}: {'continue' if self.depth > 1 else 'return None'}")
-
-    def loop(self, *both: tuple[Entry, Entry]) -> list[Entry]:
-        """A loop over two values of some entries; what follows is inside it."""
-        first, second = (", ".join(written(pair[k]) for pair in both) for k in (0, 1))
-        names = [f"w{len(self)}_{k}" for k in range(len(both))]
-        self.say(f"for {', '.join(names)} in (({first}), ({second})):" if len(both) > 1 else
-                 f"for {names[0]} in ({first}, {second}):")  # fmt: skip
-        self.depth += 1
-        return [cast(Entry, Term.named(self, name)) for name in names]
-
-    def long(self, x: Entry, y: Entry, least: float) -> None:
-        """No answer where a lever (x, y) is shorter; one of the arm's own is looked at now."""
-        square = plus(times(x, x), times(y, y))
-        if not isinstance(square, float):
-            self.unless(f"{written(square)} >= {least * least!r}")
-
-    def angle(self, turn: Turn) -> int | float:
-        """The angle of a turn, all of which are worked out together: its place among them, or an angle of the arm."""
-        c, s = turn
-        if isinstance(c, float) and isinstance(s, float):
-            return float(cast(float, angle(c, s)))
-        self.pairs.append((written(s), written(c)))
-        return len(self.pairs) - 1
-
-
 def straight_form(solver: Any) -> StraightForm | None:
-    """The code of a solver, or None where there is none."""
-    code = _Code()
+    """The code of a solver as a function, or None where there is none."""
+    source = straight_source(solver)
+    return None if source is None else compiled_form(source)
+
+
+def straight_source(solver: Any) -> str | None:
+    """The code of a solver as the source of a function, or None where there is none."""
+    code = FormCode()
     head = ", ".join(f"r{i}{j}" for i in range(3) for j in range(4))
     rows = [[cast(Entry, Term.named(code, f"r{i}{j}")) for j in range(4)] for i in range(3)]
     target = EntryFrame([row[:3] for row in rows], [row[3] for row in rows])
@@ -124,8 +80,8 @@ def straight_form(solver: Any) -> StraightForm | None:
     return _function(code, head, values)
 
 
-def _function(code: _Code, head: str, leaves: list[list[str]]) -> StraightForm:
-    """The function of a code, whose roots' joint values are given by the angles a0, a1, …"""
+def _function(code: FormCode, head: str, leaves: list[list[str]]) -> str:
+    """The source of a code, whose roots' joint values are given by the angles a0, a1, …"""
     many = len(code.pairs)
     code.say(f"ys += ({', '.join(y for y, _ in code.pairs)},)")
     code.say(f"xs += ({', '.join(x for _, x in code.pairs)},)")
@@ -133,8 +89,13 @@ def _function(code: _Code, head: str, leaves: list[list[str]]) -> StraightForm:
     rest.append(f"        {', '.join(f'a{k}' for k in range(many))}, = angles[k : k + {many}]")
     rest += [f"        leaves.append(({', '.join(leaf)}))" for leaf in leaves]
     whole = ["def straight(rows):", f"    {head} = rows", "    ys, xs, leaves = [], [], []", *code.text, *rest]
+    return "\n".join([*whole, "    return leaves"])
+
+
+def compiled_form(source: str) -> StraightForm:
+    """The function that a source defines."""
     names: dict[str, Any] = {"sqrt": math.sqrt, "copysign": math.copysign, "arctan2": np.arctan2}
-    exec(compile("\n".join([*whole, "    return leaves"]), "<straight form>", "exec"), names)
+    exec(compile(source, "<straight form>", "exec"), names)
     return cast(StraightForm, names["straight"])
 
 
@@ -153,104 +114,10 @@ def _in_order(solver: SphericalTriple | ThreeParallel, values: list[str]) -> lis
     return [value for _, value in sorted(zip(order, values, strict=True))]
 
 
-# Equations in one joint ---------------------------------------------------------------------------------------
-
-
-def _says_something(code: _Code, f: Form) -> None:
-    """No answer where every coefficient vanishes."""
-    if any(isinstance(part, float) and abs(part) >= LOOSE for part in f):
-        return
-    terms = [f"abs({written(part)}) >= {LOOSE!r}" for part in f if not isinstance(part, float)]
-    if not terms:
-        raise NoCodeError
-    code.unless(f"({' or '.join(terms)})")
-
-
-def _linear(code: _Code, a: Entry, b: Entry, e: Entry) -> Turn:
-    """Both θ of a cos θ + b sin θ = e, as `linear_roots` has them."""
-    r = root_of(code, plus(times(a, a), times(b, b)))
-    if isinstance(r, float) and (isinstance(e, float) or r < FREE):
-        raise NoCodeError
-    if not isinstance(r, float):
-        code.unless(f"{written(r)} >= {FREE!r}")
-    code.real(f"abs({written(e)}) <= {written(r)} + {CLAMP!r}")
-    scale = 1.0 / r if isinstance(r, float) else code.term(f"1.0 / {written(r)}")
-    a, b = times(a, scale), times(b, scale)
-    x = written(times(e, scale))
-    c = code.term(f"-1.0 if {x} < -1.0 else 1.0 if {x} > 1.0 else {x}")
-    s = code.term(f"sqrt({written((1.0 - c) * (1.0 + c))})")
-    ends = [(middle + side, middle - side) for middle, side in
-            ((times(a, c), -times(b, s)), (times(b, c), times(a, s)))]  # fmt: skip
-    cosine, sine = code.loop(*ends)
-    return cosine, sine
-
-
-def _quadratic(code: _Code, a: Entry, b: Entry, c: Entry) -> Entry:
-    """Both x of a x² + b x + c = 0, as `quadratic_roots` has them."""
-    if not isinstance(a, float) or isinstance(c, float):
-        raise NoCodeError
-    square, product = b * b, 4.0 * a * c
-    D = written(square - product)
-    code.real(f"{D} + {CLAMP!r} * ({written(square)} + abs({written(product)}) + {CLAMP!r}) >= 0.0")
-    q = code.term(f"-0.5 * ({written(b)} + copysign(sqrt({D} if {D} > 0.0 else 0.0), {written(b)}))")
-    code.unless(f"abs({written(q)}) >= {FREE!r}")
-    first = code.term(f"{written(c)} / {written(q)}")
-    if not abs(a) > FREE:
-        return first
-    return code.loop((first, code.term(f"{written(q)} / {written(a)}")))[0]
-
-
-def root_of(code: _Code, value: Entry) -> Entry:
-    """The square root of a sum of squares."""
-    return root(value) if isinstance(value, float) else code.term(f"sqrt({written(value)})")
-
-
-def _normalized(code: _Code, c: Entry, s: Entry, free_below: float) -> Turn:
-    """(c, s) made a cosine and a sine, as `trigonometry.normalized` does; no answer where they are too short."""
-    square = plus(times(c, c), times(s, s))
-    if isinstance(square, float):
-        return normalized(c, s, free_below)
-    code.unless(f"{written(square)} >= {free_below * free_below!r}")
-    scale = code.term(f"1.0 / sqrt({written(square)})")
-    return times(c, scale), times(s, scale)
-
-
-def _turn_between(code: _Code, v: Vector, u: Vector, free: float = FREE**2) -> Turn:
-    """The turn about z that takes the direction of v to that of u."""
-    c = plus(times(u[0], v[0]), times(u[1], v[1]))
-    s = minus(times(u[1], v[0]), times(u[0], v[1]))
-    return _normalized(code, c, s, free)
-
-
-def _two_turns(code: _Code, P: Matrix, s: Vector, w: Vector) -> tuple[Turn, Turn]:
-    """α and β of Rz(α) P Rz(β) s = w for a constant s, as `two_turns` has them."""
-    a, b = lever_of(P[2], s)
-    A = root(plus(times(a, a), times(b, b)))
-    middle = times(P[2][2], s[2])
-    if not (isinstance(A, float) and isinstance(middle, float)) or isinstance(w[2], float):
-        raise NoCodeError
-    square = plus(times(w[0], w[0]), times(w[1], w[1]))
-    great = code.term(f"1.0 + abs({written(w[2])})")
-    small = code.term(f"{written(square)} / {written(great)}")
-    up = f"{written(w[2])} > 0.0"
-    near = plus(zeroed(middle + A - 1.0), code.term(f"{written(small)} if {up} else {written(great)}"))
-    far = plus(zeroed(A - middle - 1.0), code.term(f"{written(great)} if {up} else {written(small)}"))
-    for distance in (near, far):
-        code.real(f"{written(distance)} >= {-CLAMP!r}")
-    near, far = (code.term(f"{written(end)} if {written(end)} > 0.0 else 0.0") for end in (near, far))
-    c, side = _normalized(code, far - near, code.term(f"2.0 * sqrt({written(near * far)})"), FREE)
-    cos_phi, sin_phi = normalized(a, b)
-    first, second = times(cos_phi, c), times(-1.0, times(sin_phi, side))
-    third, fourth = times(sin_phi, c), times(cos_phi, side)
-    beta = code.loop((first + second, first - second), (third + fourth, third - fourth))
-    alpha = _turn_between(code, applied(P[:2], turned((beta[0], beta[1]), s)), w)
-    return alpha, (beta[0], beta[1])
-
-
 # Spherical wrist ----------------------------------------------------------------------------------------------
 
 
-def _spherical(code: _Code, solver: SphericalTriple, target: EntryFrame) -> list[list[str]]:
+def _spherical(code: FormCode, solver: SphericalTriple, target: EntryFrame) -> list[list[str]]:
     """The leaves of an arm whose three axes meet in a point."""
     if not _all_revolute(solver):
         raise NoCodeError
@@ -264,7 +131,7 @@ def _spherical(code: _Code, solver: SphericalTriple, target: EntryFrame) -> list
     q_b, y = _second(code, solver, v, e, q_c)
     code.long(y[0], y[1], LEVER)
     x = moved(solver.A, y)
-    q_a = _turn_between(code, x, g)
+    q_a = turning_onto(code, x, g)
     if not right_angled(solver.P, solver.Q):
         code.long(x[0], x[1], LOOSE)
     R: Matrix = transposed(D.R)
@@ -275,13 +142,13 @@ def _spherical(code: _Code, solver: SphericalTriple, target: EntryFrame) -> list
     return [_in_order(solver, [*map(_source, angles), *wrist]) for wrist in _wrist(code, solver.P, solver.Q, R)]
 
 
-def _third(code: _Code, solver: SphericalTriple, v: list[Form], square: Form, e: list[Form]) -> Turn:
+def _third(code: FormCode, solver: SphericalTriple, v: list[Form], square: Form, e: list[Form]) -> Turn:
     """q_c."""
     pair = solver.pair
     if pair.rank == 1:
         f = combined((1.0, -pair.ratio), (e[pair.rest], e[pair.main]))
-        _says_something(code, f)
-        return _linear(code, f[1], f[2], times(-1.0, f[0]))
+        says_something(code, f)
+        return linear_turn(code, f[1], f[2], times(-1.0, f[0]))
     forms = [*(combined(row, e) for row in pair.inverse), v[2]]
     linear = combined((-1.0,), (square,))
     n = parallel_gradient([linear, *forms])
@@ -290,11 +157,13 @@ def _third(code: _Code, solver: SphericalTriple, v: list[Form], square: Form, e:
     along = [along_gradient(form, n) for form in forms]
     products = sum_of_products(Prismatic, [(1.0, form, form) for form in along])
     k = combined((1.0, 1.0), (products, along_gradient(linear, n)))
-    _says_something(code, k)
-    return _linear(code, n[0], n[1], _quadratic(code, k[2], k[1], k[0]))
+    says_something(code, k)
+    return linear_turn(code, n[0], n[1], quadratic(code, k[2], k[1], k[0]))
 
 
-def _second(code: _Code, solver: SphericalTriple, v: list[Form], e: list[Form], q_c: Turn) -> tuple[Turn, list[Entry]]:
+def _second(
+    code: FormCode, solver: SphericalTriple, v: list[Form], e: list[Form], q_c: Turn
+) -> tuple[Turn, list[Entry]]:
     """q_b and y."""
     v_x, v_y, v_z = (Revolute.at(part, q_c) for part in v)
     pair = solver.pair
@@ -309,21 +178,21 @@ def _second(code: _Code, solver: SphericalTriple, v: list[Form], e: list[Form], 
         y = [minus(times(n_x, along), times(n_y, across)), plus(times(n_y, along), times(n_x, across)), v_z]
     else:
         y = [*(Revolute.at(combined(row, e), q_c) for row in pair.inverse), v_z]
-    return _turn_between(code, (v_x, v_y), y), y
+    return turning_onto(code, (v_x, v_y), y), y
 
 
-def _wrist(code: _Code, P: Matrix, Q: Matrix, R: Matrix) -> list[list[str]]:
+def _wrist(code: FormCode, P: Matrix, Q: Matrix, R: Matrix) -> list[list[str]]:
     """The three turns that make up R."""
     s = [row[2] for row in Q]
     axis = [row[2] for row in P]
     if not right_angled(P, Q):
-        alpha, beta = _two_turns(code, P, s, [row[2] for row in R])
+        alpha, beta = in_two_turns(code, P, s, [row[2] for row in R])
         return [[_source(code.angle(turn)) for turn in (alpha, beta, _last(Q, R, turned(alpha, axis)))]]
     x, y, z = (row[2] for row in R)
     a, b = lever_of(P[2], s)
     phi = written(angle(a, b))
     theta = _source(code.angle((z, root_of(code, x * x + y * y))))
-    alpha = _turn_between(code, applied(P[:2], turned((-b, a), s)), (x, y), FREE)
+    alpha = turning_onto(code, applied(P[:2], turned((-b, a), s)), (x, y), FREE)
     first, last = (_source(code.angle(turn)) for turn in (alpha, _last(Q, R, turned(alpha, axis))))
     return [
         [first, f"{phi} + {theta}", last],
@@ -341,7 +210,7 @@ def _last(Q: Matrix, R: Matrix, axis: Vector) -> Turn:
 # Three parallel axes ------------------------------------------------------------------------------------------
 
 
-def _parallel(code: _Code, solver: ThreeParallel, target: EntryFrame) -> list[list[str]]:
+def _parallel(code: FormCode, solver: ThreeParallel, target: EntryFrame) -> list[list[str]]:
     """The leaves of an arm with three parallel axes."""
     if not _all_revolute(solver) or solver.rank != 1:
         raise NoCodeError
@@ -350,25 +219,25 @@ def _parallel(code: _Code, solver: ThreeParallel, target: EntryFrame) -> list[li
     A, D = solver.A or target, solver.D or target
     f = solver.equations(A, D)
     equation = combined((1.0, -solver.G.ratio), (f[solver.G.rest], f[solver.G.main]))
-    _says_something(code, equation)
-    q_a = _linear(code, equation[1], equation[2], times(-1.0, equation[0]))
+    says_something(code, equation)
+    q_a = linear_turn(code, equation[1], equation[2], times(-1.0, equation[0]))
     w = applied_back(A.R, Revolute.back(q_a, D.R[2]))
     code.long(w[0], w[1], LEVER)
     if solver.direct:
-        q_b, q_c = _two_turns(code, solver.B.R, solver.u, w)
+        q_b, q_c = in_two_turns(code, solver.B.R, solver.u, w)
     else:
-        q_c = _linear(code, *solver.height, times(-1.0, Revolute.at(f[1], q_a)))
-        q_b = _turn_between(code, applied(solver.B.R, Revolute.onward(q_c, solver.u)), w)
+        q_c = linear_turn(code, *solver.height, times(-1.0, Revolute.at(f[1], q_a)))
+        q_b = turning_onto(code, applied(solver.B.R, Revolute.onward(q_c, solver.u)), w)
     p, across = solver.seen_from_first(A, D, (q_a, q_b, q_c))
-    l1, l2 = solver.l1, solver.l2
+    l1, l2 = solver.elbow.l1, solver.elbow.l2
     lever = l1.conjugate() * l2
     e = plus(plus(times(p[0], p[0]), times(p[1], p[1])), -(abs(l1) ** 2) - abs(l2) ** 2)
-    cos2, sin2 = _linear(code, lever.real, -lever.imag, times(0.5, e))
+    cos2, sin2 = linear_turn(code, lever.real, -lever.imag, times(0.5, e))
     inner_x = plus(l1.real, minus(times(l2.real, cos2), times(l2.imag, sin2)))
     inner_y = plus(l1.imag, plus(times(l2.imag, cos2), times(l2.real, sin2)))
     first = plus(times(p[0], inner_x), times(p[1], inner_y)), minus(times(p[1], inner_x), times(p[0], inner_y))
     q1, q2, q3 = (_source(code.angle(turn)) for turn in (first, (cos2, sin2), (across[0], across[1])))
     angles = [_source(code.angle(turn)) for turn in (q_a, q_b, q_c)]
-    signs = ["-" if sign < 0.0 else "" for sign in solver.signs]
-    third = f"({q3} - {q1} - {q2} - {written(solver.turn)})"
+    signs = ["-" if sign < 0.0 else "" for sign in solver.elbow.signs]
+    third = f"({q3} - {q1} - {q2} - {written(solver.elbow.turn)})"
     return [_in_order(solver, [*angles, q1, f"{signs[0]}{q2}", f"{signs[1]}{third}"])]

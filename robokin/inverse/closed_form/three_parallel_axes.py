@@ -63,8 +63,8 @@ from robokin.inverse.closed_form.joint_functions import (
     loose,
 )
 from robokin.inverse.closed_form.loop_axes import ORDINALS, SingularEverywhereError, tilt
+from robokin.inverse.closed_form.planar_elbow import PlanarElbow
 from robokin.inverse.closed_form.trigonometry import (
-    CLAMP,
     Turn,
     linear_roots,
     normalized,
@@ -77,7 +77,6 @@ from robokin.kernel.entries import (
     EntryFrame,
     Matrix,
     Vector,
-    angle,
     applied,
     applied_back,
     columns,
@@ -90,7 +89,7 @@ from robokin.kernel.entries import (
     taken,
     times,
     transposed,
-)
+)  # fmt: skip
 
 PARALLEL = 1e-9
 """Axes at less than this angle [rad] are parallel: tables of decimal fractions and degrees are good to
@@ -116,8 +115,8 @@ class ThreeParallel:
         self.A = links[0] if first == 3 else None
         self.B, self.C = links[self.joints[1]], links[self.joints[2]]
         self.D = links[4] if first == 2 else None
-        self._prepare_plane(loop.links[self.joints[3]], loop.links[self.joints[4]])
-        self.u = [times(self.sign, row[2]) for row in self.C.R]
+        self.elbow = PlanarElbow(loop.links[self.joints[3]], loop.links[self.joints[4]])
+        self.u = [times(self.elbow.sign, row[2]) for row in self.C.R]
         self._prepare_direction()
 
     @classmethod
@@ -131,21 +130,6 @@ class ThreeParallel:
                 except SingularEverywhereError:
                     continue
         return min(found, key=lambda solver: (solver.rank, solver.deviation), default=None)
-
-    def _prepare_plane(self, L: Array, M: Array) -> None:
-        """The planar arm: p = e^(i q1) (l1 + l2 e^(± i q2)), and the turn of its hand."""
-        s1, s2 = (float(np.sign(T[2, 2])) for T in (L, M))
-        phi1, phi2 = (math.atan2(T[1, 0], T[0, 0]) for T in (L, M))
-        self.sign = s1 * s2
-        self.signs = s1, s1 * s2
-        self.l1 = complex(L[0, 3], L[1, 3])
-        # A link whose z is turned over mirrors what follows.
-        l2 = complex(M[0, 3], s1 * M[1, 3]) * complex(math.cos(phi1), math.sin(phi1))
-        self.l2 = l2
-        self.turn = phi1 + s1 * phi2
-        self.eta = float(L[2, 3] + s1 * M[2, 3])
-        if min(abs(self.l1), abs(self.l2)) < RANK:
-            raise SingularEverywhereError
 
     def _prepare_direction(self) -> None:
         """What the direction and the height have of q_c."""
@@ -198,7 +182,7 @@ class ThreeParallel:
 
     def _offset(self, D: EntryFrame) -> Entry:
         """What the height has of no joint."""
-        return plus(plus(D.t[2], dot(self.u, self.C.t)), self.sign * self.eta)
+        return plus(plus(D.t[2], dot(self.u, self.C.t)), self.elbow.sign * self.elbow.eta)
 
     def equations(self, A: EntryFrame, D: EntryFrame) -> list[Form]:
         """f(q_a), case 1: direction and height less what they have of cos q_c and sin q_c."""
@@ -329,18 +313,11 @@ class ThreeParallel:
     ) -> Candidates:
         """The candidates for given positions of a, b and c."""
         p, across = self.seen_from_first(A, D, positions)
-        turn, reached = self._elbow(p)
-        l1, l2 = self.l1, self.l2
-        cos2, sin2 = (in_front(np.asarray(part), real) for part in turn)
-        inner_x = plus(l1.real, minus(times(l2.real, cos2), times(l2.imag, sin2)))
-        inner_y = plus(l1.imag, plus(times(l2.imag, cos2), times(l2.real, sin2)))
-        p_x, p_y = p
-        q1 = angle(plus(times(p_x, inner_x), times(p_y, inner_y)), minus(times(p_y, inner_x), times(p_x, inner_y)))
-        q2 = angle(cos2, sin2)
-        q3 = angle(*across) - q1 - q2 - self.turn
+        turn, reached = self.elbow.roots(p)
+        turn = _in_front(turn, real)
         joints = (self.a, self.b, self.c)
         values = [joint.value(position) for joint, position in zip(joints, positions, strict=True)]
-        values += [q1, times(self.signs[0], q2), times(self.signs[1], q3)]
+        values += self.elbow.values(p, across, turn)
         order = [5 - j for j in self.joints] if self.reversed else list(self.joints)
         return gathered(index, dict(zip(order, values, strict=True)), real[None] & in_front(reached, real))
 
@@ -354,12 +331,6 @@ class ThreeParallel:
             x = applied_back(link.R, joint.back_direction(position, x))
         return p[:2], x[:2]
 
-    def _elbow(self, p: Vector) -> tuple[Turn, Flags]:
-        """Both turns of the second link, |p|² = |l1|² + |l2|² + 2 Re(l1* l2 e^(iq))."""
-        lever = self.l1.conjugate() * self.l2
-        e = plus(_square(p), -(abs(self.l1) ** 2) - abs(self.l2) ** 2)
-        return linear_roots(lever.real, -lever.imag, times(0.5, e))
-
     def _family(self, A: EntryFrame, D: EntryFrame, positions: Sequence[Motion], index: Index) -> Candidates:
         """Candidates where the free joint (b, or a if b slides) sees nothing but the reach of the elbow."""
 
@@ -370,18 +341,8 @@ class ThreeParallel:
             x, y = self.seen_from_first(A, D, with_turn(turn))[0]
             return np.asarray(x + 1j * np.asarray(y))
 
-        start, quarter, half = point((1.0, 0.0)), point((0.0, 1.0)), point((-1.0, 0.0))
-        center, arm = (start + half) / 2.0, (start - half) / 2.0
-        sense = np.where(((quarter - center) * (1j * arm).conj()).real < 0.0, -1.0, 1.0)
-        reach = abs(self.l1) + abs(self.l2)
-        least = np.maximum(np.abs(np.abs(center) - np.abs(arm)), abs(abs(self.l1) - abs(self.l2)))
-        most = np.minimum(np.abs(center) + np.abs(arm), reach)
-        distance = np.abs(start)
-        distance = np.where((distance >= least) & (distance <= most), distance, (least + most) / 2.0)
-        lever = center.conj() * arm
-        e = 0.5 * (distance**2 - np.abs(center) ** 2 - np.abs(arm) ** 2)
-        turn, real = linear_roots(lever.real, -sense * lever.imag, e)
-        return self._plane(A, D, with_turn(turn), real & (least <= most + CLAMP), index)
+        turn, real = self.elbow.reaching(point((1.0, 0.0)), point((0.0, 1.0)), point((-1.0, 0.0)))
+        return self._plane(A, D, with_turn(turn), real, index)
 
 
 def _seen(h: Vector, alpha: Vector) -> Form:

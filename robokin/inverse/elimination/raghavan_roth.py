@@ -35,7 +35,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,6 +81,19 @@ SPURIOUS = 1e-6
 _HALF = np.array([[1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0]])
 
 
+class Equations(NamedTuple):
+    """The equations for some targets: M0 … M5, each (b, 4, 4), and M4⁻¹ J4⁻¹ M3⁻¹ on the functions of joint 4
+    (b, 15, 3); the matrix C (b, n, n) whose eigenvalues are the roots, and what its vectors are given in, (b, 12, k).
+
+    b is 1 for what does not depend on the target.
+    """
+
+    links: list[Array]
+    V: Array
+    C: Array
+    kept: Array | None
+
+
 class Elimination:
     """A solver for one split of a loop.
 
@@ -89,7 +102,7 @@ class Elimination:
     """
 
     def __init__(self, loop: Loop, split: int, shift: float = SHIFT, perturbation: float = PERTURBATION) -> None:
-        self.imaginary = IMAGINARY
+        self.split, self.imaginary = split, IMAGINARY
         if split >= SPLITS:
             loop = _perturbed(loop, perturbation)
             self.imaginary = max(IMAGINARY, 3.0 * perturbation**0.5)
@@ -107,14 +120,19 @@ class Elimination:
         self._back = {i: fourteen_functions.joint_action(turns[i], turns[3], backwards=True) for i in (4, 5)}
         self._left_alone = fourteen_functions.invariants(turns[5], turns[3])
         self._products = np.kron(*(_HALF if turns[i] else np.eye(3) for i in (1, 2)))
-        self._shift, self._zero = shift, np.eye(4)
+        self.shift, self._zero = shift, np.eye(4)
         self._parts: dict[str, Array] = {}
         if turns[0]:
             self._zero[:2, :2] = [[np.cos(shift), -np.sin(shift)], [np.sin(shift), np.cos(shift)]]
         # The rows' degrees hold for all targets, reachable or not; two random ones show them.
         rng = np.random.default_rng(6)
         targets = transform(rotation_from_rpy(rng.uniform(-3.0, 3.0, (2, 3))), rng.normal(size=(2, 3)))
-        self._degrees = pencil.degrees(self._equations(self._around(targets))[1]) if turns[0] else None
+        self.degrees = pencil.degrees(self._equations(self._around(targets))[1]) if turns[0] else None
+
+    def links(self) -> tuple[int, Array]:
+        """Which of M0 … M5 depends on the target, and all (6, 4, 4), the identity in its place."""
+        place = next(i for i, M in enumerate(self._links) if M is None)
+        return place, np.concatenate([np.eye(4)[None] if M is None else M for M in self._links])
 
     def candidates(self, closing: Array) -> Candidates:
         """Approximate solutions for L6 (m, 4, 4)."""
@@ -122,12 +140,7 @@ class Elimination:
 
     def all_candidates(self, closing: Array, complex_too: bool = True) -> tuple[Candidates, ComplexCandidates]:
         """Approximate solutions for L6 (m, 4, 4): the real ones, and one of each conjugate pair of the complex ones."""
-        links = self._around(closing)
-        E, turning, V = self._equations(links)
-        if self._degrees is not None:
-            C, kept = pencil.of_turning(E, turning, self._degrees)
-        else:
-            C, kept = pencil.of_quadratic(E, self._turns[0], self._shift)
+        links, V, C, kept = self.equations(closing)
         roots, vectors = pencil.eigenvectors(np.broadcast_to(C, (len(closing), *C.shape[1:])))
         size = np.minimum(np.abs(roots), LARGEST)
         imaginary = self.imaginary * (1.0 + size * size)
@@ -147,6 +160,14 @@ class Elimination:
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             found = self._candidates(links, V, index, roots[index, which], products(index, which))
         return real, ComplexCandidates(*found)
+
+    def equations(self, closing: Array) -> Equations:
+        """The equations for L6 (m, 4, 4)."""
+        links = self._around(closing)
+        E, turning, V = self._equations(links)
+        if self.degrees is not None:
+            return Equations(links, V, *pencil.of_turning(E, turning, self.degrees))
+        return Equations(links, V, *pencil.of_quadratic(E, self._turns[0], self.shift))
 
     def _candidates(
         self, links: list[Array], V: Array, index: Index, x: NDArray[Any], products: NDArray[Any]
@@ -173,9 +194,8 @@ class Elimination:
         on those of joint 4 (b, 15, 3). b is 1 for all that does not depend on the target."""
         F = self._once("ahead", (0, 1, 2), lambda: self._ahead(M))
         V = self._once("behind", (3, 4), lambda: self._behind(M))
-        N = self._once("free of the last", (3, 4), lambda: self._free_of_last(V)) @ fourteen_functions.action(
-            M[5], self._free_turns
-        )
+        N = self._once("free of the last", (3, 4), lambda: self._free_of_last(V))
+        N = N @ self._once("between", (5,), lambda: fourteen_functions.action(M[5], self._free_turns))
         E = (N[:, None] @ self._forth[0]) @ F[:, None]
         return E, N[..., X_PARTS] + 1j * N[..., X_PARTS + 1], V
 
@@ -197,8 +217,12 @@ class Elimination:
     def _behind(self, M: list[Array]) -> Array:
         """M4⁻¹ J4⁻¹ M3⁻¹ on the functions of joint 4 (b, 15, 3)."""
         free = self._free_turns
-        V = fourteen_functions.action(invert(M[3]), free) @ fourteen_functions.start(free)[:, None]
-        return fourteen_functions.action(invert(M[4]), free) @ _times_joint(self._back[4], V)
+
+        def first() -> Array:
+            V = fourteen_functions.action(invert(M[3]), free) @ fourteen_functions.start(free)[:, None]
+            return _times_joint(self._back[4], V)
+
+        return fourteen_functions.action(invert(M[4]), free) @ self._once("first behind", (3,), first)
 
     def _free_of_last(self, V: Array) -> Array:
         """Six combinations (b, 6, 15) of the functions that are free of joints 4 and 5."""
@@ -209,7 +233,7 @@ class Elimination:
     def _joint_values(self, M: list[Array], V: Array, index: Index, x: Array, v: Array) -> Array:
         """The values (6, s) of all joints for roots x (s,) and products v (s, 12)."""
         turns, q = self._turns, np.empty((6, len(x)), dtype=x.dtype)
-        q[0] = 2.0 * np.arctan(x) + self._shift if turns[0] else _within_reach(np.tan(np.arctan(x) + self._shift))
+        q[0] = 2.0 * np.arctan(x) + self.shift if turns[0] else _within_reach(np.tan(np.arctan(x) + self.shift))
         products = v.reshape(-1, 4, 3)
         squares, s = np.square(np.abs(products)), np.arange(len(x))
         q[1] = _ratio(products[s, :, np.argmax(squares.sum(axis=1), axis=1)], turns[1])

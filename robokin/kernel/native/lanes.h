@@ -36,33 +36,45 @@ static const double TWO_OVER_PI = 0.63661977236758138;
 static const double PART_1 = 1.57079632673412561417e+00, PART_2 = 6.07710050630396597660e-11,
                     PART_3 = 2.02226624879595063154e-21;
 
-static inline void sine_cosine(double x, double *sine, double *cosine) {
-    double k = (x * TWO_OVER_PI + SHIFT) - SHIFT;
-    double high = x - k * PART_1, low = k * PART_2;
-    double r = high - low;
+/* Lanes by four: a loop over what may be the same memory is not turned into vector instructions by itself. */
+typedef double Part __attribute__((vector_size(32), aligned(8), may_alias));
+typedef long long Bits __attribute__((vector_size(32), aligned(8), may_alias));
+
+#define PARTS (LANES / 4)
+#define FOR_PARTS for (int h = 0; h < PARTS; h++)
+#define PART(lanes) (((Part *)(lanes))[h])
+#define CONSTANT(lanes) (((const Part *)(lanes))[h])
+#define BITS(lanes) (((Bits *)(lanes))[h])
+
+static const Part ONE = {1.0, 1.0, 1.0, 1.0};
+
+static inline Part chosen(Bits which, Part a, Part b) { return (Part)((which & (Bits)a) | (~which & (Bits)b)); }
+
+static inline void sine_cosine(Part x, Part *sine, Part *cosine) {
+    Part shift = SHIFT * ONE;
+    Part k = (x * TWO_OVER_PI + shift) - shift;
+    Part high = x - k * PART_1, low = k * PART_2;
+    Part r = high - low;
     /* What that difference rounds away, and the third part. */
-    double tail = (high - r) - low - k * PART_3;
-    double z = r * r;
-    double ps = 8.33333333332248946124e-03 +
-                z * (-1.98412698298579493134e-04 +
-                     z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
-    double v = z * r;
-    double s = r - ((z * (0.5 * tail - v * ps) - tail) - v * -1.66666666666666324348e-01);
-    double pc = z * (4.16666666666666019037e-02 +
-                     z * (-1.38888888888741095749e-03 +
-                          z * (2.48015872894767294178e-05 +
-                               z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
-    double half = 0.5 * z, w = 1.0 - half;
-    double c = w + (((1.0 - w) - half) + (z * pc - r * tail));
+    Part tail = (high - r) - low - k * PART_3;
+    Part z = r * r;
+    Part ps = 8.33333333332248946124e-03 +
+              z * (-1.98412698298579493134e-04 +
+                   z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
+    Part v = z * r;
+    Part s = r - ((z * (0.5 * tail - v * ps) - tail) - v * -1.66666666666666324348e-01);
+    Part pc = z * (4.16666666666666019037e-02 +
+                   z * (-1.38888888888741095749e-03 +
+                        z * (2.48015872894767294178e-05 +
+                             z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
+    Part half = 0.5 * z, w = 1.0 - half;
+    Part c = w + (((1.0 - w) - half) + (z * pc - r * tail));
     /* k modulo 4 without integers: 4 (k/4 - floor(k/4)) by the same shift, to -2 … 2. */
-    double quarter = k - 4.0 * ((k * 0.25 + SHIFT) - SHIFT);
-    double odd = quarter * quarter;          /* 0, 1, 4: odd quarters exchange sine and cosine */
-    double swap = odd == 1.0 ? 1.0 : 0.0;
-    double a = swap != 0.0 ? c : s, b = swap != 0.0 ? s : c;
-    double minus_sine = quarter == -1.0 || odd == 4.0 ? -1.0 : 1.0;
-    double minus_cosine = quarter == 1.0 || odd == 4.0 ? -1.0 : 1.0;
-    *sine = minus_sine * a;
-    *cosine = minus_cosine * b;
+    Part quarter = k - 4.0 * ((k * 0.25 + shift) - shift);
+    Part odd = quarter * quarter; /* 0, 1, 4: odd quarters exchange sine and cosine */
+    Bits swap = odd == ONE, half_turn = odd == 4.0 * ONE;
+    *sine = chosen((quarter == -ONE) | half_turn, -ONE, ONE) * chosen(swap, c, s);
+    *cosine = chosen((quarter == ONE) | half_turn, -ONE, ONE) * chosen(swap, s, c);
 }
 
 /* The frame x, y, z, p of LANES configurations: entry r of column c is at [3 c + r]. */
@@ -77,18 +89,19 @@ static void start(const Chain *chain, Frame *F) {
 }
 
 static void turn(Frame *F, const double *c, const double *s) {
-    for (int r = 0; r < 3; r++)
-        for (int l = 0; l < LANES; l++) {
-            double x = F->v[r][l], y = F->v[3 + r][l];
-            F->v[r][l] = c[l] * x + s[l] * y;
-            F->v[3 + r][l] = c[l] * y - s[l] * x;
+    FOR_PARTS {
+        Part cosine = CONSTANT(c), sine = CONSTANT(s);
+        for (int r = 0; r < 3; r++) {
+            Part x = PART(F->v[r]), y = PART(F->v[3 + r]);
+            PART(F->v[r]) = cosine * x + sine * y;
+            PART(F->v[3 + r]) = cosine * y - sine * x;
         }
+    }
 }
 
 static void slide(Frame *F, const double *q) {
     for (int r = 0; r < 3; r++)
-        for (int l = 0; l < LANES; l++)
-            F->v[9 + r][l] += q[l] * F->v[6 + r][l];
+        FOR_PARTS PART(F->v[9 + r]) += CONSTANT(q) * PART(F->v[6 + r]);
 }
 
 /* F C, leaving out what zeros of C spare. */
@@ -128,36 +141,40 @@ static void go_on(Frame *F, const Constant *C) {
             F->v[j][l] = G.v[j][l];
 }
 
-/* q (n, LANES) to sines and cosines of the turning joints; slides keep their values in `s`. */
-static void prepared(const Chain *chain, const double *q, ptrdiff_t count, double s[][LANES], double c[][LANES]) {
+/* The joints' values s (n, LANES) to their sines and cosines; slides keep theirs. */
+static void sines(const Chain *chain, double s[][LANES], double c[][LANES]) {
     for (int i = 0; i < chain->n; i++) {
+        double x[LANES];
         int far = 0;
+        if (!chain->revolute[i])
+            continue;
+        for (int l = 0; l < LANES; l++) {
+            x[l] = s[i][l];
+            far |= !(fabs(x[l]) <= FARTHEST);
+        }
+        FOR_PARTS {
+            Part sine, cosine;
+            sine_cosine(PART(x), &sine, &cosine);
+            PART(s[i]) = sine;
+            PART(c[i]) = cosine;
+        }
+        if (far)
+            for (int l = 0; l < LANES; l++)
+                if (!(fabs(x[l]) <= FARTHEST)) {
+                    s[i][l] = sin(x[l]);
+                    c[i][l] = cos(x[l]);
+                }
+    }
+}
+
+/* Rows q (count, n) to sines and cosines of the turning joints; slides keep their values in `s`. */
+static void prepared(const Chain *chain, const double *q, ptrdiff_t count, double s[][LANES], double c[][LANES]) {
+    for (int i = 0; i < chain->n; i++)
         for (int l = 0; l < LANES; l++) {
             ptrdiff_t row = l < count ? l : count - 1;
             s[i][l] = q[row * chain->n + i] + chain->offsets[i];
         }
-        if (!chain->revolute[i])
-            continue;
-        for (int l = 0; l < LANES; l++)
-            far |= !(fabs(s[i][l]) <= FARTHEST);
-        if (far)
-            for (int l = 0; l < LANES; l++) {
-                double x = s[i][l];
-                if (fabs(x) <= FARTHEST) {
-                    sine_cosine(x, &s[i][l], &c[i][l]);
-                } else {
-                    s[i][l] = sin(x);
-                    c[i][l] = cos(x);
-                }
-            }
-        else
-            for (int l = 0; l < LANES; l++) {
-                double sine, cosine;
-                sine_cosine(s[i][l], &sine, &cosine);
-                s[i][l] = sine;
-                c[i][l] = cosine;
-            }
-    }
+    sines(chain, s, c);
 }
 
 static void put(const Frame *F, double *out, ptrdiff_t step, ptrdiff_t count) {

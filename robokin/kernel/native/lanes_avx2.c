@@ -1,2 +1,4 @@
 #define LANES_NAME _avx2
 #include "lanes.h"
+#include "closed_forms.h"
+#include "eliminate.h"

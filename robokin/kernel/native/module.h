@@ -20,7 +20,8 @@
 #include <Python.h>
 #include <numpy/arrayobject.h>
 
-#include "chain.h"
+#include "elimination.h"
+#include "tape.h"
 
 /* What is compiled once for each set of instructions. */
 typedef struct {
@@ -28,7 +29,17 @@ typedef struct {
     void (*frames)(const Chain *, const double *, ptrdiff_t, double *);
     void (*jacobians)(const Chain *, const double *, ptrdiff_t, double, int, double *);
     void (*errors)(const Chain *, const double *, const double *, ptrdiff_t, double, double *, double *);
+    int (*solution)(const Form *, const double *, const Wanted *, Solutions *);
+    void (*solutions)(const Form *, const double *, ptrdiff_t, const Wanted *, Solutions *, ptrdiff_t *, ptrdiff_t *,
+                      unsigned char *);
+    void (*sides)(const Form *, const double *, ptrdiff_t, ptrdiff_t *);
+    void (*prepared_elimination)(Elimination *);
+    void (*eliminated)(const Elimination *, const double *, Eliminated *);
+    int (*listed_elimination)(const Elimination *, const Form *, const double *, const Wanted *, Solutions *, int *);
 } Lanes;
+
+/* Methods of the other files. */
+extern PyMethodDef closed_form_methods[], elimination_methods[], number_text_methods[];
 
 /* The set in use. */
 extern Lanes lanes;
@@ -47,9 +58,6 @@ PyObject *empty(PyArrayObject *q, int more, const npy_intp *shape);
 
 /* The number of rows of q. */
 npy_intp rows(PyArrayObject *q);
-
-/* Methods of other files. */
-extern PyMethodDef number_text_methods[];
 
 /* The name of a chain's capsule. */
 #define CHAIN "robokin.chain"

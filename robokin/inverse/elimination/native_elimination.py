@@ -1,0 +1,86 @@
+"""All solutions of a loop of six turning joints by the native kernel, one target at a time.
+
+Statement. Give what `window` gives by elimination, Newton's steps, proof and count, for targets each by itself.
+Derivation. The formulas are those of `raghavan_roth`, `pencil`, `loop_newton` and `complex_newton`; the eigenvalues
+come from a QR of its own. Where fewer than N distinct regular complex solutions are known poses next door are asked, as
+`neighbours` does, and what they lead to is counted by the same rules.
+Degenerate case. Where N are still not known nothing is said: such a target is left to Python's code.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robokin.arrays import Array, Flags, Index
+from robokin.inverse.elimination.loop import Loop
+from robokin.inverse.elimination.raghavan_roth import SPLITS, Elimination
+from robokin.kernel.chain import Chain
+from robokin.kernel.facts import fact
+from robokin.kernel.native_kernel import handle, native
+from robokin.spatial import rotation_from_rpy, transform
+
+BESIDE = 6
+"""Poses next door that are asked where solutions are missing."""
+
+TWIST = 1e-3
+"""How far away they are [size and rad]: roots are told apart, and Newton's steps lead back."""
+
+ROOM = 8
+"""Poses next door that the native kernel has room for."""
+
+
+class NativeElimination:
+    """An elimination that the native kernel works out, for a chain of six turning joints with N complex solutions."""
+
+    def __init__(self, known: object, number: int) -> None:
+        self.known, self.number = known, number
+
+    def many(self, T: Array) -> tuple[Index, Array, Array, Array, Index, Flags]:
+        """What is found for targets T (m, 4, 4) [m], rigid motions.
+
+        Of each solution its target (s,), q (s, 6) [rad], and what it lacks (s,) [m], (s,) [rad], by target; of each
+        target how many candidates there were (m,), and whether all N complex solutions are known (m,).
+        """
+        assert native is not None
+        counts, rows = native.eliminated(self.known, T)
+        tried, number, count, _ = counts.astype(np.intp).T
+        index = np.repeat(np.arange(len(T)), count)
+        columns = np.ascontiguousarray(rows.T)
+        return index, columns[:6].T, columns[6], columns[7], tried, number == self.number
+
+
+def native_elimination(solver: Elimination, loop: Loop, chain: Chain, number: int | None) -> NativeElimination | None:
+    """The native kernel's elimination for a chain and its loop; None where Python does it.
+
+    number: N, how many complex solutions the loop has at a random pose.
+    """
+    if native is None or number is None or solver.split >= SPLITS or not loop.revolute.all():
+        return None
+    return _native_elimination(solver, loop, chain, number)
+
+
+@fact
+def _native_elimination(solver: Elimination, loop: Loop, chain: Chain, number: int) -> NativeElimination | None:
+    assert native is not None
+    arm = handle(chain)
+    if arm is None:
+        return None
+    return NativeElimination(native.elimination(arm, _numbers(solver, loop, number)), number)
+
+
+def _numbers(solver: Elimination, loop: Loop, number: int) -> Array:
+    """What the native kernel is told of an elimination, in one row: see `elimination` there."""
+    target, links = solver.links()
+    degrees = solver.degrees
+    free, paired = (0, 0) if degrees is None else (degrees.free, degrees.paired)
+    beside = poses_beside(BESIDE)
+    away = np.concatenate([beside, np.tile(np.eye(4), (ROOM - BESIDE, 1, 1))])
+    whole = [*solver.joints, solver.backwards, target, free, paired, number, BESIDE]
+    motions = np.concatenate([links, away, loop.first[None], loop.last[None], loop.links])
+    return np.concatenate([whole, [loop.size, solver.shift, solver.imaginary], motions[:, :3].ravel()])
+
+
+def poses_beside(count: int) -> Array:
+    """Motions (count, 4, 4) by a trifle, in any direction."""
+    rng = np.random.default_rng(3)
+    return transform(rotation_from_rpy(TWIST * rng.normal(size=(count, 3))), TWIST * rng.normal(size=(count, 3)))

@@ -1,0 +1,105 @@
+"""The answer for one target as a table, and the `Result` that is made of it when it is looked at.
+
+Statement. Keep what was found for a pose until something of it is asked for: of the answers in a loop over poses most
+are looked at in part, or not at all.
+Derivation. One row a solution; the list is cut to the limits, ordered by a wish, and cut to a number.
+Degenerate case. None.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from robokin.arrays import Array
+from robokin.inverse.claims import BASES, COUNTED, counted_sentence
+from robokin.inverse.full_turns import TURN
+from robokin.inverse.one_target_arm import OneTargetArm
+from robokin.inverse.solution_names import branch_names
+from robokin.inverse.solutions import Question, Result, named_later
+from robokin.model import Robot
+
+INSIDE, TURNS = 2, 3
+"""Of the columns of a table after the joint values."""
+
+
+@dataclass(eq=False, slots=True)
+class OneAnswer:
+    """The solutions for one target T (4, 4) [m].
+
+    tried: how many candidates there were; table: (k, 10) a row for each that was found: joint values, turned into the
+    limits where that can be [rad], what it lacks of the target [m, rad], whether it is within the limits, and how many
+    configurations within them it is equivalent to, a column that may be left out; limits, most, wish: what was asked.
+    """
+
+    arm: OneTargetArm
+    T: Array
+    tried: int
+    table: Array
+    limits: bool
+    most: int | None
+    wish: Array | None
+
+    def result(self, question: Question) -> Result:
+        """The answer for a question."""
+        table, most = self.table, self.most
+        values: list[list[float]] = table[:, 6:].tolist()
+        rows = list(range(len(values)))
+        if self.limits:
+            rows = [k for k in rows if values[k][INSIDE]]
+        if self.wish is not None:
+            wish = self.wish.tolist()
+            moves = [max([abs(a - b) for a, b in zip(q, wish, strict=True)]) for q in table[:, :6].tolist()]
+            rows.sort(key=moves.__getitem__)
+        within = len(rows)
+        if most is not None:
+            rows = rows[:most]
+        everything = table[:, :6]
+        q = everything.copy() if len(rows) == len(values) and self.wish is None else everything.take(rows, axis=0)
+        find = _Names(self.arm.robot, everything, rows).name
+        solutions = []
+        for k, row in enumerate(rows):
+            position, angle, inside = values[row][:3]
+            solutions.append(named_later(partial(find, k), q[k], inside != 0.0, position, angle, ()))
+        count, analysis = len(values), self.arm.analysis
+        complete = len(rows) == within
+        counts = {"found": self.tried, "duplicates": 0, "closing": count}
+        if self.limits:
+            counts["within_limits"] = within
+        counts["listed"] = len(rows)
+        if self.limits:
+            told = table.shape[1] > 6 + TURNS
+            counts["turns"] = sum([int(values[row][TURNS]) if told else self._equivalents(row) for row in rows])
+        return Result(
+            tuple(solutions), complete, analysis.method, counts=counts, postures=complete,
+            basis=BASES[COUNTED] if complete else None,
+            certificate=counted_sentence(analysis.number, count, self.arm.form is not None), all_known=True,
+            question=question,
+        )  # fmt: skip
+
+    def _equivalents(self, row: int) -> int:
+        """How many configurations within the limits a row's joint values are equivalent to, itself included."""
+        values: list[float] = self.table[row].tolist()
+        count = 1
+        for joint, low, high in self.arm.turning:
+            least = min(math.ceil((low - values[joint]) / TURN), 0)
+            count *= max(math.floor((high - values[joint]) / TURN), 0) - least + 1
+        return count
+
+
+class _Names:
+    """The names of some solutions, `rows` of all q (m, 6), which are found when one is asked for."""
+
+    def __init__(self, robot: Robot, q: Array, rows: list[int]) -> None:
+        self.asked: tuple[Robot, Array, list[int]] = robot, q, rows
+        self.known: list[str] | None = None
+
+    def name(self, k: int) -> str:
+        """The name of the solution in place k of the rows."""
+        robot, q, rows = self.asked
+        if self.known is None:
+            self.known = branch_names(robot, q, np.zeros(len(q), dtype=np.intp))
+        return self.known[rows[k]]

@@ -1,0 +1,88 @@
+"""The targets of a block that the native kernel answers, which are nearly all where an arm has a closed form.
+
+Statement. Give the solutions of those targets at which nothing is doubtful, in the order and with the numbers of the
+blocks, and say which targets are left to these.
+Derivation. The kernel follows all roots of the closed form, proves each and looks at limits by the rules of
+`one_target`: what it answers is complete, and each of its targets is answered by itself.
+Degenerate case. What is not plain is no part of it. None where there is no native kernel, or it does not know the arm.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from robokin.arrays import Array, Flags, Index
+from robokin.inverse.claims import COUNTED, Claims
+from robokin.inverse.one_target_arm import one_target_arm
+from robokin.inverse.target_block import Request, TargetBlock, in_order
+from robokin.inverse.verify import Found
+from robokin.kernel.native_kernel import native
+
+
+def kernel_form(request: Request) -> object | None:
+    """What the native kernel knows the closed form of a request's arm by; None where blocks are to answer."""
+    robot, near = request.robot, request.near
+    if native is None or request.method == "numeric" or request.analysis.open:
+        return None
+    arm = one_target_arm(robot)
+    if arm is None or arm.analysis is not request.analysis:
+        return None
+    return arm.kernel if near is None or request.limits or robot.within_limits(near) else None
+
+
+class PlainBlock(TargetBlock):
+    """The answers of the native kernel for those targets of a block that it answers.
+
+    plain: (m,) which of the given ones these are; tables: (k, r, 6), (k, r), (k, r), (k, r) what is listed of each, in
+    as many rows as the closed form has roots: joint values, distances, angles (NaN where there are fewer solutions),
+    and which are within the limits.
+    """
+
+    def __init__(self, request: Request, T: Array) -> None:
+        """Answer what is plain of targets T (m, 4, 4) [m]; the others are no part of this block."""
+        assert native is not None
+        self.plain, count, listed, *tables = native.solutions(kernel_form(request), T, request.limits, request.near)
+        if not self.plain.all():
+            plain = self.plain
+            T, count, listed, tables = T[plain], count[plain], listed[plain], [table[plain] for table in tables]
+        self.request, self.T, self.tables = request, T, tables
+        self._nearest, self._arcs = {}, {}
+        self.claims = Claims(np.full(len(T), COUNTED, dtype=np.int8), request.analysis.number, count, branches=True)
+        self.claims.candidates, self.claims.duplicates = count, np.zeros_like(count)
+        self.closing, self.within, self.count = count, listed, listed
+        if request.near is not None or request.most is not None:
+            self.found, self.inside = in_order(request, self.found, self.inside, None)
+            self.count = np.bincount(self.found.index, minlength=len(T))
+        self.cut = self.within > self.count
+
+    @cached_property
+    def found(self) -> Found:  # type: ignore[override]
+        """What is listed, target after target."""
+        q, position, angle, _ = (table[self._rows] for table in self.tables)
+        return Found(np.repeat(np.arange(len(self.T)), self.within), q, position, angle)
+
+    @cached_property
+    def inside(self) -> Flags:  # type: ignore[override]
+        """Which of these are within the limits."""
+        which: Flags = self.tables[3][self._rows]
+        return which
+
+    @cached_property
+    def _rows(self) -> Flags:
+        return np.arange(self.tables[1].shape[1]) < self.within[:, None]
+
+    @cached_property
+    def every(self) -> tuple[Array, Index]:  # type: ignore[override]
+        """All solutions, within the limits or not, and their targets."""
+        assert native is not None
+        _, count, _, q, *_ = native.solutions(kernel_form(self.request), self.T, False, self.request.near)
+        return q[np.arange(q.shape[1]) < count[:, None]], np.repeat(np.arange(len(count)), count)
+
+    def padded(self, most: int) -> tuple[Array, Array, Array, Flags]:
+        """What is listed in tables of `most` rows a target: see `TargetBlock.padded`."""
+        if self.request.near is None and self.request.most is None and most <= self.tables[1].shape[1]:
+            q, position, angle, inside = (table[:, :most] for table in self.tables)
+            return q, position, angle, inside
+        return super().padded(most)

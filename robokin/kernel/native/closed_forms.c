@@ -1,0 +1,409 @@
+/* Closed forms as methods of the module: a handle made of a tape, solutions for one target and for many.
+
+   What a tape says is checked when the handle is made, so that no register, root or level beyond the memory for it is
+   ever asked for.
+*/
+
+#include "module.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Of a solution's row. */
+#define COLUMNS (SIX + 4)
+
+static const char *FORM = "robokin.form";
+
+/* Error of a rotation that is rounding, how far the last row may be from 0 0 0 1, and the origin from the base. */
+#define RIGID 1e-14
+#define BOTTOM 1e-9
+#define FARTHEST_TARGET 1e12
+
+static const char *SIGNS = "robokin.signs";
+
+static void freed_signs(PyObject *capsule) { PyMem_Free(PyCapsule_GetPointer(capsule, SIGNS)); }
+
+static void freed_form(PyObject *capsule) { PyMem_Free(PyCapsule_GetPointer(capsule, FORM)); }
+
+/* Whether a target is a rigid pose to the last digits; what is no number is none. */
+static int plain_pose(const double *T) {
+    const double *a = T, *b = T + 4, *c = T + 8;
+    double error = 0.0;
+    for (int i = 0; i < 3; i++)
+        for (int j = i; j < 3; j++) {
+            double off = fabs(a[i] * a[j] + b[i] * b[j] + c[i] * c[j] - (i == j));
+            if (!(off <= RIGID))
+                return 0;
+            error = off > error ? off : error;
+        }
+    double determinant = (a[0] * b[1] - b[0] * a[1]) * c[2] + (b[0] * c[1] - c[0] * b[1]) * a[2] +
+                         (c[0] * a[1] - a[0] * c[1]) * b[2];
+    return determinant > 0.0 && fabs(a[3]) <= FARTHEST_TARGET && fabs(b[3]) <= FARTHEST_TARGET &&
+           fabs(c[3]) <= FARTHEST_TARGET && fabs(T[12]) <= BOTTOM && fabs(T[13]) <= BOTTOM && fabs(T[14]) <= BOTTOM &&
+           fabs(T[15] - 1.0) <= BOTTOM;
+}
+
+/* A whole number from 0 to below `end`, or -1. */
+static int whole(double value, int end) { return value >= 0.0 && value < end && value == floor(value) ? (int)value : -1; }
+
+/* A place as two numbers say it, within the registers. */
+static int placed(const double *from, Place *place) {
+    place->slot = whole(from[0], MOST_SLOTS);
+    place->level = whole(from[1], MOST_LEVELS + 1);
+    return place->slot >= 0 && place->level >= 0 && place->slot + (1 << place->level) <= MOST_SLOTS;
+}
+
+static int apart(const Place *a, const Place *b) {
+    return a->slot + (1 << a->level) <= b->slot || b->slot + (1 << b->level) <= a->slot;
+}
+
+/* The steps of a tape (k, 9): operation, and slot and level of out, a, b and c. */
+static int taped(Form *form, const double *from) {
+    for (int k = 0; k < form->steps; k++, from += 9) {
+        Step *step = form->tape + k;
+        step->op = whole(from[0], OPERATIONS);
+        if (step->op < 0 || !placed(from + 1, &step->out) || !placed(from + 3, &step->a) ||
+            !placed(from + 5, &step->b) || !placed(from + 7, &step->c))
+            return 0;
+        int told = step->op == REAL || step->op == NEEDED || step->op == LEVER || step->op == ENTERED;
+        /* What is written is read by no operand of the same step, and is no constant. */
+        if (!told && (step->out.slot < form->inputs + form->constants || !apart(&step->out, &step->a) ||
+                      !apart(&step->out, &step->b) || !apart(&step->out, &step->c)))
+            return 0;
+        if ((step->op == ENTERED || step->op == BOTH) && step->out.level < 1)
+            return 0;
+        if (told && step->out.level > form->levels)
+            return 0;
+    }
+    return 1;
+}
+
+static void columns_of(const double *T, double *out) {
+    for (int c = 0; c < 4; c++)
+        for (int r = 0; r < 3; r++)
+            out[3 * c + r] = T[4 * r + c];
+}
+
+/* form(chain, links (2, 4, 4), (unit, size), tape, constants, leaves (r, 6, 2), levels, limits (6, 7)) */
+static PyObject *form(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copies[6] = {NULL}, *capsule = NULL;
+    PyArrayObject *sizes, *links, *tape, *constants, *leaves, *limits;
+    (void)self;
+    double levels = count == 8 ? PyFloat_AsDouble(args[6]) : 0.0;
+    const Chain *chain = count == 8 && !PyErr_Occurred() ? PyCapsule_GetPointer(args[0], CHAIN) : NULL;
+    if (!chain) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "form(chain, links, sizes, tape, constants, leaves, levels, limits)");
+        return NULL;
+    }
+    links = doubles(args[1], 3, &copies[0]);
+    tape = links ? doubles(args[3], 2, &copies[1]) : NULL;
+    constants = tape ? doubles(args[4], 1, &copies[2]) : NULL;
+    leaves = constants ? doubles(args[5], 3, &copies[3]) : NULL;
+    limits = leaves ? doubles(args[7], 2, &copies[4]) : NULL;
+    sizes = limits ? doubles(args[2], 1, &copies[5]) : NULL;
+    if (!sizes)
+        goto end;
+    npy_intp steps = PyArray_SIZE(tape) / 9, many = PyArray_SIZE(constants), roots = PyArray_SIZE(leaves) / (2 * SIX);
+    const double *size = PyArray_DATA(sizes);
+    int high = whole(levels, MOST_LEVELS + 1), turning = chain->n == SIX;
+    for (int i = 0; turning && i < SIX; i++)
+        turning = chain->revolute[i];
+    if (!turning || PyArray_SIZE(links) != 32 || steps > MOST_STEPS || PyArray_SIZE(tape) != 9 * steps ||
+        many > MOST_SLOTS - ROWS || roots < 1 || high < 0 || roots > MOST_ROOTS >> high ||
+        PyArray_SIZE(leaves) != 2 * SIX * roots || PyArray_SIZE(limits) != 7 * SIX || PyArray_SIZE(sizes) != 2 ||
+        !(size[0] > 0.0 && size[1] > 0.0)) {
+        PyErr_SetString(PyExc_ValueError, "arrays of a closed form do not fit each other");
+        goto end;
+    }
+    Form *made = PyMem_Malloc(sizeof(Form) + (size_t)steps * sizeof(Step));
+    if (!made) {
+        PyErr_NoMemory();
+        goto end;
+    }
+    memset(made, 0, sizeof(Form));
+    made->chain = *chain;
+    made->unit = size[0];
+    made->size = size[1];
+    columns_of(PyArray_DATA(links), made->first);
+    columns_of((const double *)PyArray_DATA(links) + 16, made->last);
+    made->inputs = ROWS;
+    made->levels = high;
+    made->leaves = (int)roots;
+    made->constants = (int)many;
+    made->steps = (int)steps;
+    const double *value = PyArray_DATA(constants), *place = PyArray_DATA(leaves), *bound = PyArray_DATA(limits);
+    for (int k = 0; k < many; k++)
+        made->value[k] = value[k];
+    int fits = taped(made, PyArray_DATA(tape));
+    for (int k = 0; k < roots; k++)
+        for (int i = 0; i < SIX; i++, place += 2)
+            fits = fits && placed(place, &made->leaf[k][i]) && made->leaf[k][i].level <= high;
+    for (int i = 0; i < SIX; i++, bound += 7) {
+        made->low[i] = bound[0];
+        made->high[i] = bound[1];
+        made->bounded[i] = bound[2] != 0.0;
+        made->beyond[i] = bound[3] != 0.0;
+        made->wide[i] = bound[4] != 0.0;
+        made->wide_low[i] = bound[5];
+        made->wide_high[i] = bound[6];
+    }
+    if (fits)
+        capsule = PyCapsule_New(made, FORM, freed_form);
+    else
+        PyErr_SetString(PyExc_ValueError, "a tape asks for what is not there");
+    if (!capsule)
+        PyMem_Free(made);
+end:
+    for (int i = 0; i < 6; i++)
+        Py_XDECREF(copies[i]);
+    return capsule;
+}
+
+/* signs(chain, size, tape, constants, places (k, 2)): a handle of the signs that name an arm's postures. */
+static PyObject *signs(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copies[3] = {NULL}, *capsule = NULL;
+    PyArrayObject *tape, *constants, *places;
+    (void)self;
+    double size = count == 5 ? PyFloat_AsDouble(args[1]) : 0.0;
+    const Chain *chain = count == 5 && !PyErr_Occurred() ? PyCapsule_GetPointer(args[0], CHAIN) : NULL;
+    if (!chain) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "signs(chain, size, tape, constants, places)");
+        return NULL;
+    }
+    tape = doubles(args[2], 2, &copies[0]);
+    constants = tape ? doubles(args[3], 1, &copies[1]) : NULL;
+    places = constants ? doubles(args[4], 2, &copies[2]) : NULL;
+    if (!places)
+        goto end;
+    npy_intp steps = PyArray_SIZE(tape) / 9, many = PyArray_SIZE(constants), bits = PyArray_SIZE(places) / 2;
+    if (chain->n != SIX || steps > MOST_STEPS || PyArray_SIZE(tape) != 9 * steps || many > MOST_SLOTS - AXES ||
+        bits > SIX || PyArray_SIZE(places) != 2 * bits || !(size > 0.0)) {
+        PyErr_SetString(PyExc_ValueError, "arrays of signs do not fit each other");
+        goto end;
+    }
+    Form *made = PyMem_Malloc(sizeof(Form) + (size_t)steps * sizeof(Step));
+    if (!made) {
+        PyErr_NoMemory();
+        goto end;
+    }
+    memset(made, 0, sizeof(Form));
+    made->chain = *chain;
+    made->size = size;
+    made->inputs = AXES;
+    made->leaves = (int)bits;
+    made->constants = (int)many;
+    made->steps = (int)steps;
+    const double *value = PyArray_DATA(constants), *place = PyArray_DATA(places);
+    for (int k = 0; k < many; k++)
+        made->value[k] = value[k];
+    int fits = taped(made, PyArray_DATA(tape));
+    for (int k = 0; k < bits; k++, place += 2)
+        fits = fits && placed(place, &made->leaf[0][k]) && made->leaf[0][k].level == 0;
+    if (fits)
+        capsule = PyCapsule_New(made, SIGNS, freed_signs);
+    else
+        PyErr_SetString(PyExc_ValueError, "a tape asks for what is not there");
+    if (!capsule)
+        PyMem_Free(made);
+end:
+    for (int i = 0; i < 3; i++)
+        Py_XDECREF(copies[i]);
+    return capsule;
+}
+
+/* sides(signs, q (s, 6)): (s) a number whose bits are the signs of each configuration. */
+static PyObject *sides(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copy = NULL, *codes = NULL;
+    (void)self;
+    const Form *known = count == 2 ? PyCapsule_GetPointer(args[0], SIGNS) : NULL;
+    PyArrayObject *q = known ? doubles(args[1], 2, &copy) : NULL;
+    if (!q) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "sides(signs, q)");
+        return NULL;
+    }
+    npy_intp m = PyArray_DIM(q, 0);
+    if (PyArray_NDIM(q) != 2 || PyArray_DIM(q, 1) != SIX)
+        PyErr_SetString(PyExc_ValueError, "expected configurations (s, 6)");
+    else
+        codes = PyArray_EMPTY(1, &m, NPY_INTP, 0);
+    if (codes) {
+        ptrdiff_t *to = PyArray_DATA((PyArrayObject *)codes);
+        const double *from = PyArray_DATA(q);
+        if (m < LONG) {
+            lanes.sides(known, from, m, to);
+        } else {
+            Py_BEGIN_ALLOW_THREADS
+            lanes.sides(known, from, m, to);
+            Py_END_ALLOW_THREADS
+        }
+    }
+    Py_XDECREF(copy);
+    return codes;
+}
+
+/* What a call asks for: form, limits, and a copy of the wish, or None. */
+static const Form *wanted_of(PyObject *const *args, Wanted *wanted, double wish[SIX]) {
+    PyObject *copy = NULL;
+    wanted->limits = PyObject_IsTrue(args[2]);
+    wanted->inside_only = 0;
+    wanted->wish = NULL;
+    if (wanted->limits < 0)
+        return NULL;
+    if (args[3] != Py_None) {
+        PyArrayObject *near = doubles(args[3], 1, &copy);
+        if (near && PyArray_SIZE(near) == SIX) {
+            memcpy(wish, PyArray_DATA(near), SIX * sizeof(double));
+            wanted->wish = wish;
+        } else if (near) {
+            PyErr_SetString(PyExc_ValueError, "expected a wish for each joint");
+        }
+        Py_XDECREF(copy);
+        if (!wanted->wish)
+            return NULL;
+    }
+    return PyCapsule_GetPointer(args[0], FORM);
+}
+
+/* How many configurations within the limits joint values are equivalent to, themselves included. */
+static double equivalents(const Form *form, const double *q) {
+    double count = 1.0;
+    for (int i = 0; i < SIX; i++)
+        if (form->wide[i]) {
+            double least = ceil((form->wide_low[i] - q[i]) / TURN), most = floor((form->wide_high[i] - q[i]) / TURN);
+            count *= (most > 0.0 ? most : 0.0) - (least < 0.0 ? least : 0.0) + 1.0;
+        }
+    return count;
+}
+
+/* solution(form, T, limits, wish, elimination): a row q, position, angle, inside, equivalents for each solution, and the target as it
+   was; None where others are to look at it, or none is within the limits. */
+static PyObject *solution(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    double T[16], wish[SIX], q[MOST_CANDIDATES][SIX], position[MOST_CANDIDATES], angle[MOST_CANDIDATES];
+    unsigned char inside[MOST_CANDIDATES];
+    int tried = 0;
+    Wanted wanted;
+    (void)self;
+    const Form *known = count == 5 ? wanted_of(args, &wanted, wish) : NULL;
+    const Elimination *general = known && args[4] != Py_None ? PyCapsule_GetPointer(args[4], ELIMINATION) : NULL;
+    if (!known || PyErr_Occurred()) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "solution(form, T, limits, wish, elimination)");
+        return NULL;
+    }
+    PyArrayObject *given = (PyArrayObject *)args[1];
+    if (!PyArray_CheckExact(args[1]) || PyArray_TYPE(given) != NPY_DOUBLE || PyArray_NDIM(given) != 2 ||
+        PyArray_DIM(given, 0) != 4 || PyArray_DIM(given, 1) != 4 || !PyArray_ISBEHAVED_RO(given))
+        Py_RETURN_NONE;
+    const char *from = PyArray_DATA(given);
+    for (int r = 0; r < 4; r++)
+        for (int c = 0; c < 4; c++)
+            T[4 * r + c] = *(const double *)(from + r * PyArray_STRIDE(given, 0) + c * PyArray_STRIDE(given, 1));
+    Solutions out = {q[0], position, angle, inside, 0};
+    int plain = plain_pose(T), within = 0, found = 0;
+    if (plain && general)
+        found = lanes.listed_elimination(general, known, T, &wanted, &out, &tried);
+    else if (plain)
+        tried = found = lanes.solution(known, T, &wanted, &out);
+    for (int k = 0; k < found; k++)
+        within += inside[k];
+    if (!found || (wanted.limits && !within))
+        Py_RETURN_NONE;
+    const npy_intp shape[] = {found, COLUMNS}, four[] = {4, 4};
+    PyObject *rows = PyArray_EMPTY(2, shape, NPY_DOUBLE, 0);
+    PyObject *target = rows ? PyArray_EMPTY(2, four, NPY_DOUBLE, 0) : NULL, *both = NULL;
+    if (target) {
+        double *to = PyArray_DATA((PyArrayObject *)rows);
+        memcpy(PyArray_DATA((PyArrayObject *)target), T, sizeof(T));
+        for (int k = 0; k < found; k++, to += COLUMNS) {
+            memcpy(to, q[k], SIX * sizeof(double));
+            to[SIX] = position[k];
+            to[SIX + 1] = angle[k];
+            to[SIX + 2] = inside[k];
+            to[SIX + 3] = equivalents(known, q[k]);
+        }
+        both = Py_BuildValue("OOi", rows, target, tried);
+    }
+    Py_XDECREF(rows);
+    Py_XDECREF(target);
+    return both;
+}
+
+/* solutions(form, T, limits, wish): which targets are answered (m), how many solutions they have (m), how many are
+   listed (m), and of these, of each target in as many rows as there are roots, joint values, distances, angles and which
+   are within the limits. With limits only these are listed. */
+static PyObject *solutions(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copy = NULL, *made[7] = {NULL}, *all = NULL;
+    double wish[SIX];
+    Wanted wanted;
+    (void)self;
+    const Form *known = count == 4 ? wanted_of(args, &wanted, wish) : NULL;
+    PyArrayObject *T = known ? doubles(args[1], 3, &copy) : NULL;
+    if (!T) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "solutions(form, T, limits, wish)");
+        return NULL;
+    }
+    if (PyArray_NDIM(T) != 3 || PyArray_DIM(T, 1) != 4 || PyArray_DIM(T, 2) != 4) {
+        PyErr_SetString(PyExc_ValueError, "expected targets (m, 4, 4)");
+        goto end;
+    }
+    const npy_intp shape[] = {PyArray_DIM(T, 0), known->leaves << known->levels, SIX};
+    const int types[] = {NPY_BOOL, NPY_INTP, NPY_INTP, NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE, NPY_BOOL};
+    void *at[7];
+    for (int i = 0; i < 7; i++) {
+        made[i] = PyArray_EMPTY(i < 3 ? 1 : i == 3 ? 3 : 2, shape, types[i], 0);
+        if (!made[i])
+            goto end;
+        at[i] = PyArray_DATA((PyArrayObject *)made[i]);
+    }
+    wanted.inside_only = wanted.limits;
+    Solutions out = {at[3], at[4], at[5], at[6], 0};
+    const double *from = PyArray_DATA(T);
+    if (shape[0] < LONG) {
+        lanes.solutions(known, from, shape[0], &wanted, &out, at[1], at[2], at[0]);
+    } else {
+        Py_BEGIN_ALLOW_THREADS
+        lanes.solutions(known, from, shape[0], &wanted, &out, at[1], at[2], at[0]);
+        Py_END_ALLOW_THREADS
+    }
+    all = PyTuple_Pack(7, made[0], made[1], made[2], made[3], made[4], made[5], made[6]);
+end:
+    for (int i = 0; i < 7; i++)
+        Py_XDECREF(made[i]);
+    Py_XDECREF(copy);
+    return all;
+}
+
+/* rigid(T): whether all targets of an array (..., 4, 4) are rigid poses to the last digits. */
+static PyObject *rigid(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copy = NULL;
+    (void)self;
+    PyArrayObject *T = count == 1 ? doubles(args[0], 2, &copy) : NULL;
+    if (!T) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "rigid(T)");
+        return NULL;
+    }
+    int last = PyArray_NDIM(T) - 1;
+    int all = PyArray_DIM(T, last) == 4 && PyArray_DIM(T, last - 1) == 4;
+    const double *from = PyArray_DATA(T);
+    for (npy_intp left = all ? PyArray_SIZE(T) / 16 : 0; all && left; left--, from += 16)
+        all = plain_pose(from);
+    Py_XDECREF(copy);
+    return PyBool_FromLong(all);
+}
+
+PyMethodDef closed_form_methods[] = {
+    {"form", (PyCFunction)(void (*)(void))form, METH_FASTCALL,
+     "form(chain, links, sizes, tape, constants, leaves, levels, limits): a closed form's handle"},
+    {"solution", (PyCFunction)(void (*)(void))solution, METH_FASTCALL, "solution(form, T, limits, wish, elimination)"},
+    {"solutions", (PyCFunction)(void (*)(void))solutions, METH_FASTCALL, "solutions(form, T, limits, wish)"},
+    {"signs", (PyCFunction)(void (*)(void))signs, METH_FASTCALL,
+     "signs(chain, size, tape, constants, places): a handle of the signs of postures"},
+    {"sides", (PyCFunction)(void (*)(void))sides, METH_FASTCALL, "sides(signs, q): their bits"},
+    {"rigid", (PyCFunction)(void (*)(void))rigid, METH_FASTCALL, "rigid(T)"},
+    {NULL, NULL, 0, NULL},
+};
