@@ -51,3 +51,14 @@ class Units:
     def as_record(self) -> dict[str, str]:
         """`{"length": …, "angle": …}`, as every JSON document says it."""
         return {"length": self.length, "angle": self.angle}
+
+
+def value_in_unit(value: float, factor: float) -> float:
+    """An SI value in units of `factor`, without the last digit's dust that the division leaves.
+
+    90° in radians and back is 90.00000000000001; a value within two units in the last place of one
+    with twelve digits is that one.
+    """
+    scaled = value / factor
+    short = float(f"{scaled:.12g}")
+    return (short if abs(scaled - short) <= 4.0 * math.ulp(scaled) else scaled) + 0.0

@@ -14,9 +14,10 @@ import robokin
 
 PACKAGE = Path(robokin.__file__).parent
 ORDER = [
-    "errors", "arrays", "expected", "unfinished_work", "files", "units", "number_text", "brief", "spatial", "model",
-    "kernel", "jobs", "assembly", "kinematics", "formats", "tables", "inverse", "workspace", "mobility", "derivation",
-    "grading", "pictures", "records", "reports", "drawings", "symbol_matrices", "documents", "notebook", "cli",
+    "errors", "arrays", "expected", "unfinished_work", "files", "units", "number_text", "brief",
+    "rotation_entries", "spatial", "model", "kernel", "jobs", "assembly", "kinematics", "formats", "tables", "inverse",
+    "workspace", "mobility", "derivation", "grading", "pictures", "records", "reports", "quick", "drawings",
+    "symbol_matrices", "documents", "notebook", "cli",
 ]  # fmt: skip
 """Each room imports only rooms before it."""
 
@@ -28,8 +29,8 @@ ANSWERS = ("grading", "answers")
 handed what it has read, or a function that reads it within the answer's budget."""
 
 CALCULATING = [
-    "errors", "arrays", "expected", "units", "number_text", "brief", "spatial", "model", "kernel", "jobs", "assembly",
-    "kinematics", "inverse", "workspace", "mobility", "derivation", "grading",
+    "errors", "arrays", "expected", "units", "number_text", "brief", "rotation_entries", "spatial", "model",
+    "kernel", "jobs", "assembly", "kinematics", "inverse", "workspace", "mobility", "derivation", "grading",
 ]  # fmt: skip
 HOMES = {"yaml": "formats", "typer": "cli", "rich": "reports", "matplotlib": "pictures"}
 

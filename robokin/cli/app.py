@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+from functools import cache
 from importlib import import_module
 from typing import Annotated, Any
 
@@ -32,6 +33,7 @@ COMMANDS = {
     "dof": "Degrees of freedom: Grübler's count and the mobility.",
     "check": "Mark answers: poses, joint values, tables, counts.",
     "frame": "Evaluate a transform expression.",
+    "serve": "Answer questions, a line each, for programs that ask often.",
 }
 """Every command with its line in the overview; its module is `robokin.cli.commands.<name>_command`."""
 
@@ -144,6 +146,7 @@ class CommandGroup(TyperGroup):
             formatter.write_dl(list(COMMANDS.items()))
 
 
+@cache
 def build(name: str, function: Any) -> Any:
     """A command of its own from a function with Typer's annotations; its docstring is the help."""
     from robokin.cli.option_groups import expanded
@@ -187,12 +190,18 @@ def options(
     """Robot kinematics from a YAML file."""
 
 
+@cache
+def _whole() -> Any:
+    """The command of all commands."""
+    return typer.main.get_command(app)
+
+
 def invoke(arguments: list[str]) -> int:
     """Run the command that the arguments name; its status. Raises InputError for a usage that is wrong.
 
     Typer's own way to run a command is not taken: it ends with status 1 at a closed pipe.
     """
-    command: Any = typer.main.get_command(app)
+    command: Any = _whole()
     if "_ROBOKIN_COMPLETE" in os.environ:
         command.main(arguments, prog_name="robokin")
     if not arguments:

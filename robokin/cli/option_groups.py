@@ -31,6 +31,7 @@ from robokin.errors import InputError
 
 if TYPE_CHECKING:
     from robokin.formats.part import Part
+    from robokin.formats.plain_robots import PlainRobot
     from robokin.model import Mechanism, Robot, Tree, WheeledBase
     from robokin.units import Units
 
@@ -127,6 +128,13 @@ class DescriptionOptions(UnitOptions):
 
         robot = load_robot(name, parameter_overrides(self.set_), self.part())
         return robot, self.over(robot.units)
+
+    def plain(self, name: str, robot: Robot) -> PlainRobot | None:
+        """The robot as plain numbers, which are kept of the library's own; None where there are none."""
+        from robokin.formats.plain_robots import library_robot, plain_robot
+
+        own = not (self.set_ or self.tip or self.root or self.exact or self.package)
+        return (library_robot(name) if own else None) or plain_robot(robot)
 
     def robot_or_tree(self, name: str) -> tuple[Robot | Tree, Units]:
         """The same, or where several tips are meant the tree. Raises InputError."""

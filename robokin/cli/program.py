@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 from robokin.cli.statuses import DONE, INTERRUPTED, WRONG_INPUT, abandon, say
@@ -33,9 +34,18 @@ def run(arguments: list[str]) -> int:
     from robokin.errors import DescriptionError, RobokinError
 
     try:
-        from robokin.cli.app import invoke
+        from robokin.quick.plain_words import answered
 
-        return invoke(arguments)
+        data = None if "_ROBOKIN_COMPLETE" in os.environ else answered(arguments)
+        if data is None:
+            from robokin.cli.app import invoke
+
+            return invoke(arguments)
+        from robokin.tables.sink import sink
+
+        with sink(None) as stream:
+            stream.write(data)
+        return DONE
     except RobokinError as error:
         # All mistakes of a description are said at once, each with its line.
         say(str(error), lines=isinstance(error, DescriptionError))

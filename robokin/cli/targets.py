@@ -17,8 +17,7 @@ from robokin.kinematics.flat_arm import flat_arm, planar_pose, upright_tool
 from robokin.model import Robot
 from robokin.spatial import rotation_from_euler, rotation_from_quaternion, rotation_from_rpy, transform
 from robokin.spatial.rotations import DIGITS_LOST
-from robokin.tables.pose_columns import near_enough
-from robokin.tables.pose_files import pose_in_file, pose_in_json
+from robokin.tables.near_targets import near_enough
 from robokin.units import Units
 
 
@@ -134,6 +133,8 @@ def _near(T: Array, option: str, units: Units) -> Array:
 
 
 def _matrix(text: str, units: Units) -> Target:
+    from robokin.tables.pose_files import pose_in_file, pose_in_json
+
     inline = text.lstrip().startswith(("[", "{"))
     name = "--matrix" if inline else f"--matrix {text}"
     try:

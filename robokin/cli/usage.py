@@ -24,6 +24,7 @@ COMMAND_WORDS = {
     "new": "create init start template make import",
     "validate": "lint verify valid",
     "schema": "format",
+    "serve": "server daemon listen repl stream",
 }
 """What else people call a command, by the command."""
 

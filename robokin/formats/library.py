@@ -85,8 +85,6 @@ def described_whole(
     name_or_path: str | Path, overrides: Mapping[str, str] | None, mode: int | None, part: Part
 ) -> Robot | Mechanism | WheeledBase | Tree:
     """See `load_any`; all that is described, of a tree with one tip the tree."""
-    from robokin.formats.read import read_file  # a list of names needs no reader
-
     name = str(name_or_path)
     if isinstance(name_or_path, Path) or is_path(name):
         try:
@@ -94,12 +92,21 @@ def described_whole(
                 from robokin.formats.foreign_files import read_foreign
 
                 return read_foreign(Path(name_or_path), overrides or {}, mode, part)
+            from robokin.formats.read import read_file
+
             return read_file(Path(name_or_path), overrides, mode=mode)
         except InputError as error:
             raise _with_hint(error, Path(name_or_path)) from None
     path = library_file(name.lower())
     if path is None:
         raise unknown_name(name)
+    if not overrides and mode is None:
+        from robokin.formats.kept_robots import kept_robot
+
+        if (kept := kept_robot(library_folder(), path)) is not None:
+            return kept
+    from robokin.formats.read import read_file  # which takes longer to load than most answers
+
     return read_file(path, overrides, id=path.stem, mode=mode)
 
 

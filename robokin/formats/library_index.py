@@ -8,11 +8,11 @@ so. `python -m robokin.formats.library_index` writes the index anew; a test says
 from __future__ import annotations
 
 import json
-import zlib
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from robokin.formats.kept_robots import check_sum_in
 from robokin.formats.library import library_files, library_folder
 
 INDEX = "index.jsonl"
@@ -47,7 +47,7 @@ def library_entries() -> list[Entry]:
     entries = []
     for path in library_files():
         check, entry = known.get(path.stem, (None, None))
-        entries.append(entry if entry is not None and check == _check(path) else entry_of(path))
+        entries.append(entry if entry is not None and check == check_sum(path) else entry_of(path))
     return entries
 
 
@@ -80,7 +80,7 @@ def entry_of(path: Path) -> Entry:
 
 def index_text() -> str:
     """The index of the library as it is now."""
-    lines = [{"check": _check(path), **asdict(entry_of(path))} for path in library_files()]
+    lines = [{"check": check_sum(path), **asdict(entry_of(path))} for path in library_files()]
     return "".join(json.dumps(line, ensure_ascii=False) + "\n" for line in lines)
 
 
@@ -101,9 +101,9 @@ def _known() -> dict[str, tuple[int, Entry]]:
     return known
 
 
-def _check(path: Path) -> int:
-    text = path.read_bytes().replace(b"\r\n", b"\n")  # a checkout on Windows has other ends of lines
-    return zlib.crc32(text, zlib.crc32(" ".join(_folders(path)).encode()))
+def check_sum(path: Path) -> int:
+    """The check sum of a description of the library."""
+    return check_sum_in(library_folder(), path)
 
 
 def _folders(path: Path) -> tuple[str, ...]:

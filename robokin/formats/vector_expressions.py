@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-import numpy as np
+import re
+from math import isfinite
+from typing import TYPE_CHECKING
 
-from robokin.arrays import Array
 from robokin.errors import ExpressionError, InputError, counted, did_you_mean, shown
 from robokin.formats.number_expressions import Scope, evaluate
-from robokin.model import Robot, Tree
-from robokin.model.joint_units import in_units, joint_factors
 from robokin.units import Units
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robokin.arrays import Array
+    from robokin.model import Robot, Tree
+
+
+PLAIN = re.compile(r"(\s*[-+]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?\s*(,|$))+(?<!,)")
+"""Numbers between commas, without a formula."""
 
 
 def split_vector(text: str) -> list[str]:
@@ -40,20 +49,31 @@ def split_vector(text: str) -> list[str]:
     return [part for part in spaced if part]
 
 
-def parse_numbers(text: str, option: str, angles: list[bool], units: Units, what: str) -> Array:
+def parse_numbers(text: str, option: str, angles: Sequence[bool], units: Units, what: str) -> Array:
     """A vector (k,) in the given units; `angles` tells which of its k values are angles.
 
     Raises InputError that names the option, the value and what was expected.
     """
+    import numpy as np
+
+    return np.array(parse_floats(text, option, angles, units, what), dtype=np.float64)
+
+
+def parse_floats(text: str, option: str, angles: Sequence[bool], units: Units, what: str) -> list[float]:
+    """The same as a list."""
+    if PLAIN.fullmatch(text):
+        values = [*map(float, text.split(","))]
+        if len(values) == len(angles) and all(map(isfinite, values)):
+            return values
     parts = split_vector(text)
     if len(parts) != len(angles):
         found = counted(len(parts), "value")
         raise InputError(f"{option}: found {found} in '{shown(text)}', expected {len(angles)}: {what}")
     scope = Scope(degrees=units.degrees)
-    values = np.empty(len(parts))
+    values = []
     for i, (part, angle) in enumerate(zip(parts, angles, strict=True)):
         try:
-            values[i] = evaluate(part, scope, angle=angle).number
+            values.append(evaluate(part, scope, angle=angle).number)
         except ExpressionError as error:
             raise InputError(f"{option}: value {i + 1} of {len(angles)}: {error}") from None
     return values
@@ -61,6 +81,8 @@ def parse_numbers(text: str, option: str, angles: list[bool], units: Units, what
 
 def parse_configuration(text: str, robot: Robot | Tree, units: Units, option: str = "--q") -> Array:
     """Joint values (n,) in the given units, from a vector or the name of a pose of the description."""
+    from robokin.model.joint_units import in_units, joint_factors
+
     name = text.strip()
     if name in robot.poses:
         return in_units(robot.poses[name], joint_factors(robot, units))

@@ -29,7 +29,8 @@ from robokin.inverse.closed_form.three_prismatic import ThreePrismatic
 from robokin.inverse.elimination.loop import Loop, loop_of
 from robokin.inverse.elimination.loop_newton import closing_at
 from robokin.inverse.elimination.padding import Padded, padded_chains
-from robokin.inverse.elimination.splits import choose_splits, elimination_of, generic_count, trial_poses
+from robokin.inverse.elimination.splits import choose_splits, elimination_of, generic_count
+from robokin.jobs.arbitrary_numbers import arbitrary
 from robokin.kernel.chain import Chain, chain_of, chain_size, with_joints, with_joints_at
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import frames, pose
@@ -185,7 +186,7 @@ def _dimension(chain: Chain, size: float, first: int, last: int) -> int:
 
 def _generic_jacobians(chain: Chain, size: float) -> Array:
     """Jacobians (3, 6, n), lengths in sizes, at arbitrary configurations."""
-    q = np.random.default_rng(11).uniform(-2.0, 2.0, (3, chain.n)) * np.where(chain.revolute, 1.0, size)
+    q = 2.0 * arbitrary(11, 3, chain.n) * np.where(chain.revolute, 1.0, size)
     target = np.broadcast_to(transform(np.eye(3), np.zeros(3)), (3, 4, 4))
     return error_and_jacobian(chain, np.array(target), q, size)[1]
 
@@ -220,8 +221,8 @@ def _by_elimination(part: Chain) -> tuple[Padded, Loop, General] | None:
 
 
 def trial_closing(loop: Loop) -> Array:
-    """L6 (1, 4, 4) of a random pose."""
-    return closing_at(loop, trial_poses(loop)[0][:1])
+    """L6 (1, 4, 4) of an arbitrary pose, the first of `trial_poses`."""
+    return closing_at(loop, arbitrary(7, 1, 6) * np.where(loop.revolute, np.pi, 1.0))
 
 
 class General:

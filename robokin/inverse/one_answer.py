@@ -16,11 +16,11 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.claims import BASES, COUNTED, counted_sentence
-from robokin.inverse.full_turns import TURN
 from robokin.inverse.one_target_arm import OneTargetArm
 from robokin.inverse.solution_names import branch_names
 from robokin.inverse.solutions import Question, Result, named_later
 from robokin.model import Robot
+from robokin.spatial.angles import TURN
 
 INSIDE, TURNS = 2, 3
 """Of the columns of a table after the joint values."""

@@ -18,13 +18,14 @@ from robokin.inverse.closed_form.form_tape import FormTape, form_tape
 from robokin.inverse.closed_form.straight_forms import StraightForm, compiled_form, straight_source
 from robokin.inverse.elimination.loop import Loop
 from robokin.inverse.elimination.native_elimination import native_elimination
-from robokin.inverse.full_turns import TURN, turning
+from robokin.inverse.full_turns import turning
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import program_to_tool
 from robokin.kernel.native_kernel import handle, native
 from robokin.kernel.straight_line import StraightResiduals, straight_residuals
 from robokin.model import Robot
 from robokin.model.robot import LIMIT_TOLERANCE, tolerated
+from robokin.spatial.angles import TURN
 
 NO_TAPE = FormTape(np.empty((0, 9)), np.empty(0), np.zeros((1, 6, 2)), 0, 0)
 """What stands for a closed form where there is none, and the native kernel is told the limits alone."""

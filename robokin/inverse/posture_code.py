@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from robokin.inverse.closed_form.form_tape import form_tape
 from robokin.inverse.postures import Postures
+from robokin.kernel.code_lines import Term, written
 from robokin.kernel.facts import fact
 from robokin.kernel.joint_axes import Axes
 from robokin.kernel.native_kernel import handle, native
-from robokin.kernel.straight_line import Term, written
 
 
 @fact

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array, Flags
+from robokin.kernel.code_lines import Term, written
 from robokin.kernel.joint_axes import Axes, cross, dot
-from robokin.kernel.straight_line import Term, written
 
 Quantity = Callable[[Axes], Array]
 Point = Callable[[Axes], Array]

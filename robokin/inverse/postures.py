@@ -56,6 +56,7 @@ from robokin.inverse.posture_signs import (
     triple_product,
     turn_of,
 )
+from robokin.jobs.arbitrary_numbers import arbitrary
 from robokin.kernel.chain import Chain, chain_size
 from robokin.kernel.joint_axes import NEARLY, Axes, cross, dot
 
@@ -118,7 +119,7 @@ class _Arm:
 
     def __init__(self, chain: Chain) -> None:
         self.chain, self.size, self.turns = chain, chain_size(chain), chain.revolute
-        q = np.random.default_rng(20).uniform(-1.0, 1.0, (3, chain.n))
+        q = arbitrary(20, 3, chain.n)
         self.axes = self.at(np.where(self.turns, q, q * self.size))
 
     def at(self, q: Array) -> Axes:

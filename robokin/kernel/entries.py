@@ -14,6 +14,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from robokin.arrays import Array, Index
+from robokin.kernel.spared_products import increased as increased
+from robokin.kernel.spared_products import minus as minus
+from robokin.kernel.spared_products import plus as plus
+from robokin.kernel.spared_products import times as times
+from robokin.kernel.spared_products import turned as turned
+from robokin.kernel.spared_products import turned_back as turned_back
 
 Entry = float | Array
 Vector = Sequence[Entry]
@@ -58,69 +64,6 @@ def cleaned(value: float) -> float:
     """value, or 0 or ±1 where it is that but for rounding."""
     whole = float(round(value)) if abs(value) < 1.5 else value
     return whole + 0.0 if abs(value - whole) < NOTHING else value
-
-
-def times(a: Entry, b: Entry) -> Entry:
-    """a b."""
-    if isinstance(b, float):
-        a, b = b, a
-    if isinstance(a, float):
-        if a == 0.0:
-            return 0.0
-        if a == 1.0:
-            return b
-        if a == -1.0:
-            return -b
-    return a * b
-
-
-def plus(a: Entry, b: Entry) -> Entry:
-    """a + b."""
-    if isinstance(a, float) and a == 0.0:
-        return b
-    if isinstance(b, float) and b == 0.0:
-        return a
-    return a + b
-
-
-def minus(a: Entry, b: Entry) -> Entry:
-    """a - b."""
-    if isinstance(b, float) and b == 0.0:
-        return a
-    if isinstance(a, float) and a == 0.0:
-        return -b
-    return a - b
-
-
-def increased(total: Entry, number: float, entry: Entry) -> Entry:
-    """total + number · entry."""
-    if isinstance(entry, float):
-        return plus(total, number * entry) if entry else total
-    if isinstance(total, float) and total == 0.0:
-        return times(number, entry)
-    if number == 1.0:
-        return total + entry
-    if number == -1.0:
-        return total - entry
-    return total + number * entry if number else total
-
-
-def turned(c: Entry, u: Entry, s: Entry, v: Entry) -> Entry:
-    """c u + s v."""
-    if isinstance(u, float) or isinstance(v, float):
-        return plus(times(c, u), times(s, v))
-    product = c * u
-    product += s * v
-    return product
-
-
-def turned_back(c: Entry, u: Entry, s: Entry, v: Entry) -> Entry:
-    """c u - s v."""
-    if isinstance(u, float) or isinstance(v, float):
-        return minus(times(c, u), times(s, v))
-    product = c * u
-    product -= s * v
-    return product
 
 
 def dot(u: Vector, v: Vector) -> Entry:

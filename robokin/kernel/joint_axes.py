@@ -11,8 +11,8 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.kernel.chain import Chain
+from robokin.kernel.code_lines import Term
 from robokin.kernel.frames import frames
-from robokin.kernel.straight_line import Term
 
 NEARLY = 0.01
 """Sine of an angle, or a distance in the arm's size, below which axes count as parallel or as meeting: calibration

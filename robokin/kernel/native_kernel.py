@@ -7,38 +7,28 @@ It is optional and gives what Python's code gives, but for the last digits. `ROB
 from __future__ import annotations
 
 import os
-import sys
 from types import ModuleType
 
 import numpy as np
 
-from robokin.errors import InputError
 from robokin.kernel.chain import Chain
 from robokin.kernel.facts import fact
-
-INTERFACE = 2
-"""What the C code offers; one of another version, as an old build leaves it in the sources, is not used."""
+from robokin.kernel.native_module import missing, native_module
 
 
-def _loaded(choice: str) -> ModuleType | None:
-    """The kernel for what ROBOKIN_KERNEL says; None for Python's own code."""
-    if choice not in ("", "python", "native"):
-        raise InputError(f"ROBOKIN_KERNEL is {choice}, expected python or native")
-    # A Python without its lock would load a module that is not made for it.
-    if choice != "python" and "t" not in getattr(sys, "abiflags", ""):
-        try:
-            from robokin.kernel import _native
-        except ImportError:
-            pass
-        else:
-            if getattr(_native, "interface", None) == INTERFACE:
-                return _native
-    if choice == "native":
-        raise InputError("ROBOKIN_KERNEL is native, but this installation has no native kernel")
-    return None
+def _with_arrays(module: ModuleType | None) -> ModuleType | None:
+    """The kernel, if this numpy is one that it knows."""
+    try:
+        if module is not None:
+            module.with_arrays()
+    except ImportError:
+        if os.environ.get("ROBOKIN_KERNEL") == "native":
+            raise missing() from None
+        return None
+    return module
 
 
-native = _loaded(os.environ.get("ROBOKIN_KERNEL", ""))
+native = _with_arrays(native_module())
 """The kernel in use, or None."""
 
 kernel_in_use = "python" if native is None else "native"

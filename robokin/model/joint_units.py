@@ -6,7 +6,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.model import Robot, Tree
-from robokin.units import Units
+from robokin.units import Units, value_in_unit
 
 
 def joint_factors(robot: Robot | Tree, units: Units) -> Array:
@@ -15,11 +15,7 @@ def joint_factors(robot: Robot | Tree, units: Units) -> Array:
 
 
 def in_units(values: Array, factors: Array | float) -> Array:
-    """SI values in units of `factors`, without the last digit's dust that the division leaves.
-
-    90° in radians and back is 90.00000000000001; a value within two units in the last place of one
-    with twelve digits is that one.
-    """
-    scaled = values / factors
-    short = np.array([float(f"{value:.12g}") for value in np.ravel(scaled)]).reshape(np.shape(scaled))
-    return np.where(np.abs(scaled - short) <= 4.0 * np.spacing(np.abs(scaled)), short, scaled) + 0.0
+    """SI values in units of `factors`, without the last digit's dust that the division leaves."""
+    values, factors = np.broadcast_arrays(values, factors)
+    found = map(value_in_unit, values.ravel().tolist(), factors.ravel().tolist())
+    return np.array([*found]).reshape(values.shape)

@@ -21,3 +21,8 @@ def envelope(key: str, about: str | None, units: Units | None, id: str | None = 
     if units is not None:
         record["units"] = units.as_record()
     return record
+
+
+def configuration_record(head: dict[str, Any], q: list[float], within: bool, pose: dict[str, Any]) -> dict[str, Any]:
+    """The answer of `fk` about a robot at one configuration, below the first keys of its document."""
+    return {**head, "q": q, "within_limits": within, "pose": pose}

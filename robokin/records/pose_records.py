@@ -8,7 +8,7 @@ from typing import Any
 
 from robokin.arrays import Array, Flags
 from robokin.model import Robot, Tree
-from robokin.records.envelope import envelope
+from robokin.records.envelope import configuration_record, envelope
 from robokin.spatial import axis_angle_from_rotation
 from robokin.tables.orientations import orientation
 from robokin.units import Units
@@ -87,7 +87,7 @@ def configuration_records(
     names = [str(i) for i in range(1, len(robot.rows) + 1)]
     rows = zip(poses.q.tolist(), poses.within.tolist(), pose_records(poses.T, units, more), strict=True)
     for i, (q, within, pose) in enumerate(rows):
-        record: dict[str, Any] = {**head, "q": q, "within_limits": within, "pose": pose}
+        record = configuration_record(head, q, within, pose)
         if poses.frames is not None:
             matrices = zip(names, poses.frames[i].tolist(), strict=True)
             record["frames"] = [{"name": name, "matrix": matrix} for name, matrix in matrices]

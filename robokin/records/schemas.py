@@ -23,6 +23,7 @@ HOMES = {
     "dof": "freedom_schemas.dof",
     "plot": "solution_schemas.plot",
     "check": "mark_schemas.CHECKS",
+    "serve": "serve_schemas.serve",
 }
 """Where each schema is made: only the one that is asked for is loaded."""
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.model import Robot
-from robokin.number_text import show
 from robokin.records.pose_blocks import PoseMaker
 from robokin.records.pose_records import PoseBlock, configuration_records
 from robokin.reports.answer_stream import SharedStream
@@ -171,20 +170,13 @@ class PoseReport(SharedStream):
 
     def page(self, poses: PoseBlock) -> list[Any]:
         """All that can be said of one pose, for eyes."""
-        from robokin.reports.page_tables import heading, number_table, pairs
+        from robokin.reports.page_tables import heading, number_table
+        from robokin.reports.pose_pages import LABELS, pose_page
 
         T = poses.T[0]
-        parts: list[Any] = [heading(self.robot.name, f"lengths in {self.units.length}, angles in {self.units.angle}")]
-        parts += ["", number_table("nsap", T[:3].tolist(), "xyz"), ""]
-        entries = [("q", "  ".join(show(value) for value in poses.q[0]))] if self.robot.n else []
-        entries.append(("position", "  ".join(show(value) for value in T[:3, 3])))
-        labels = {"rpy": "roll pitch yaw", "quaternion": "quaternion", "euler": "Euler ZYZ", "abc": "A B C",
-                  "quaternion-xyzw": "x y z w", "rotvec": "rotation vector", "wpr": "W P R"}  # fmt: skip
-        for kind in dict.fromkeys([self.orientation or "rpy", "rpy", "quaternion"]):
-            if kind in labels:
-                values = orientation(T, kind, self.units)
-                entries.append((labels[kind], "  ".join(show(value) for value in values)))
-        parts.append(pairs(entries))
+        kinds = [kind for kind in dict.fromkeys([self.orientation or "rpy", "rpy", "quaternion"]) if kind in LABELS]
+        said = [(kind, orientation(T, kind, self.units).tolist()) for kind in kinds]
+        parts = pose_page(self.robot.name, self.units, poses.q[0].tolist(), T[:3].tolist(), said)
         for i, frame in enumerate([] if poses.frames is None else poses.frames[0], start=1):
             parts += ["", heading(f"frame {i}"), number_table("nsap", frame[:3].tolist(), "xyz")]
         return parts

@@ -19,7 +19,8 @@ from robokin.model.joint_units import joint_factors
 from robokin.number_text import show
 from robokin.records.self_motion_records import is_within
 from robokin.records.solution_records import SolutionRecords
-from robokin.reports.page_tables import WIDTH, heading, narrow_table, render
+from robokin.reports.page_parts import WIDTH
+from robokin.reports.page_tables import heading, narrow_table, render
 from robokin.reports.self_motion_words import DECIMALS, FamilyWords, held_in_words, joint_names, joints_can_move
 from robokin.reports.solution_verdicts import BLANK, verdict
 from robokin.units import Units

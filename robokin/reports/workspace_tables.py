@@ -13,7 +13,8 @@ from robokin.errors import counted
 from robokin.number_text import show
 from robokin.pictures.workspace_cuts import Cut
 from robokin.records.workspace_records import GROUPS, WORDS, holds_at_a_point, known, ranges_of
-from robokin.reports.page_tables import WIDTH, heading, pairs, render, table
+from robokin.reports.page_parts import WIDTH
+from robokin.reports.page_tables import heading, pairs, render, table
 from robokin.units import Units
 from robokin.workspace.place import WorkspacePlace
 from robokin.workspace.sizes import Measure

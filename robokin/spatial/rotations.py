@@ -10,13 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
-
-SINGULAR = 1e-12
-"""Below this sine (of the middle angle) a triple of angles is singular.
-
-It stands well above the rounding of a product of ten matrices (about 1e-15) and setting the outer
-angle to zero there moves the matrix by no more than this.
-"""
+from robokin.rotation_entries import NO_DIGIT, SINGULAR, quaternion_products, rpy_of_entries
 
 DIGITS_LOST = 1e-3
 """A matrix or quaternion this near to a rotation is one whose digits were cut in print (four digits leave
@@ -83,15 +77,7 @@ def rpy_from_rotation(R: ArrayLike) -> Array:
     Singular at pitch = ±90°, where only one sum of roll and yaw is determined: roll is 0 there.
     """
     R = np.asarray(R, dtype=np.float64)
-    cp = np.hypot(R[..., 2, 1], R[..., 2, 2])
-    regular = cp > SINGULAR
-    roll = np.where(regular, np.arctan2(R[..., 2, 1], R[..., 2, 2]), 0.0)
-    pitch = np.arctan2(-R[..., 2, 0], cp)
-    # The second column of R Rx(-roll) is (-sin yaw, cos yaw, 0). Taken from there, yaw makes up for
-    # any rounding of roll near the singularity, so that the matrix is always given back.
-    c, s = np.cos(roll), np.sin(roll)
-    yaw = np.arctan2(s * R[..., 0, 2] - c * R[..., 0, 1], c * R[..., 1, 1] - s * R[..., 1, 2])
-    return np.stack([roll, pitch, yaw], axis=-1)
+    return np.stack(rpy_of_entries(_entries(R), np), axis=-1)
 
 
 def rotation_from_euler(euler: ArrayLike) -> Array:
@@ -143,24 +129,13 @@ def quaternion_from_rotation(R: ArrayLike) -> Array:
     division is by a small number.
     """
     R = np.asarray(R, dtype=np.float64)
-    a, b, c = R[..., 0, 0], R[..., 1, 1], R[..., 2, 2]
-    # 4 times the products of each element with each other: the columns of 4 q qᵀ.
-    wx, wy, wz = R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]
-    xy, xz, yz = R[..., 0, 1] + R[..., 1, 0], R[..., 0, 2] + R[..., 2, 0], R[..., 1, 2] + R[..., 2, 1]
-    squares = np.stack([1 + a + b + c, 1 + a - b - c, 1 - a + b - c, 1 - a - b + c], axis=-1)
-    columns = np.stack(
-        [
-            np.stack([squares[..., 0], wx, wy, wz], axis=-1),
-            np.stack([wx, squares[..., 1], xy, xz], axis=-1),
-            np.stack([wy, xy, squares[..., 2], yz], axis=-1),
-            np.stack([wz, xz, yz, squares[..., 3]], axis=-1),
-        ],
-        axis=-2,
-    )
+    products = quaternion_products(_entries(R))
+    squares = np.stack([products[i][i] for i in range(4)], axis=-1)
+    columns = np.stack([np.stack(column, axis=-1) for column in products], axis=-2)
     greatest = np.argmax(squares, axis=-1)[..., None, None]
     q = np.take_along_axis(columns, greatest, axis=-2)[..., 0, :]
     q = q / np.linalg.norm(q, axis=-1, keepdims=True)
-    q = np.where(np.abs(q) < 1e-16, 0.0, q)
+    q = np.where(np.abs(q) < NO_DIGIT, 0.0, q)
     first = np.take_along_axis(q, np.argmax(q != 0.0, axis=-1)[..., None], axis=-1)
     return np.asarray(q * np.sign(first))
 
@@ -251,3 +226,8 @@ def _matrix(*rows: Array) -> Array:
     """Nine arrays (...) in reading order as matrices (..., 3, 3)."""
     M = np.stack(np.broadcast_arrays(*rows), axis=-1)
     return M.reshape(*M.shape[:-1], 3, 3)
+
+
+def _entries(R: Array) -> list[list[Array]]:
+    """The entries (...) of rotations (..., 3, 3), by rows."""
+    return [[R[..., i, j] for j in range(3)] for i in range(3)]

@@ -12,8 +12,8 @@ from robokin.formats.printed_matrices import pose_from_matrix
 from robokin.kinematics.flat_arm import planar_pose, upright_tool
 from robokin.spatial import nearest_rotation, rotation_error, transform
 from robokin.spatial.rotations import DIGITS_LOST
-from robokin.spatial.transforms import FARTHEST
 from robokin.tables.headings import FoundColumns, Way, find, partial, refused
+from robokin.tables.near_targets import BadRowError, near_enough
 from robokin.tables.orientations import MATRIX, ORIENTATIONS
 from robokin.tables.wanted_columns import Wanted
 from robokin.units import Units
@@ -127,14 +127,6 @@ class PoseColumns(Wanted):
         return way
 
 
-class BadRowError(Exception):
-    """A row, counted from 0, that is no pose, and why."""
-
-    def __init__(self, row: int, sentence: str) -> None:
-        """`sentence` says what was found and what was expected."""
-        self.row, self.sentence = row, sentence
-
-
 def poses_from_rows(rows: Array, kind: str, units: Units, plane: Array | None = None) -> Array:
     """Poses (m, 4, 4) [m] from rows (m, k) in the units. Raises BadRowError for the first that is none.
 
@@ -178,14 +170,3 @@ def _poses_from_matrices(M: Array, units: Units) -> Array:
     if cut.any():
         R[cut] = nearest_rotation(R[cut])
     return near_enough(transform(R, M[:, :3, 3] * units.metres), units)
-
-
-def near_enough(T: Array, units: Units) -> Array:
-    """Poses (..., 4, 4) [m] as they are. Raises BadRowError, or ValueError for one, when they are too far away."""
-    far = ~(np.abs(T[..., :3, 3]) <= FARTHEST).all(axis=-1)
-    if far.any():
-        sentence = f"found a target too far away, expected less than {FARTHEST / units.metres:g} {units.length}"
-        if T.ndim == 2:
-            raise ValueError(sentence)
-        raise BadRowError(int(np.argmax(far)), sentence)
-    return T

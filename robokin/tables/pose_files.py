@@ -10,7 +10,7 @@ from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.files import open_input, read_up_to
 from robokin.formats.printed_matrices import pose_from_matrix
-from robokin.tables.pose_columns import near_enough
+from robokin.tables.near_targets import near_enough
 from robokin.tables.target_rows import one_pose, pose_of
 from robokin.tables.text_source import Say
 from robokin.units import Units

@@ -17,6 +17,13 @@ from robokin.unfinished_work import unfinished
 ENDINGS = {".csv": "csv", ".jsonl": "jsonl", ".json": "json", ".npy": "npy"}
 """Formats by the ending of the output's name."""
 
+
+class Writing:
+    """Whether files are written; not where questions are served."""
+
+    refused = False
+
+
 CLOSED_OUTPUT = "standard output is closed, expected a place that can be written"
 
 
@@ -46,6 +53,8 @@ def sink(output: str | None, option: str = "--output") -> Iterator[IO[bytes]]:
     if output is None:
         yield from _standard_output()
         return
+    if Writing.refused:
+        raise InputError(f"{option} {output}: expected no file to write, answers are documents on standard output")
     place = Destination(output, option)
     try:
         with place.straight() if place.special else place.whole() as stream:

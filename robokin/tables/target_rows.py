@@ -18,8 +18,9 @@ from robokin.tables.carried import Carried
 from robokin.tables.csv_rows import CsvReader
 from robokin.tables.json_documents import DocumentReader
 from robokin.tables.json_rows import Passing, stated_units
+from robokin.tables.near_targets import BadRowError, near_enough
 from robokin.tables.orientations import ORIENTATIONS
-from robokin.tables.pose_columns import PLACES, PLANE, WAYS, BadRowError, PoseColumns, near_enough, poses_from_rows
+from robokin.tables.pose_columns import PLACES, PLANE, WAYS, PoseColumns, poses_from_rows
 from robokin.tables.rows import kind_of_stream
 from robokin.tables.text_source import ROWS, Say
 from robokin.tables.wanted_columns import factors

@@ -21,6 +21,10 @@ STEERING = re.compile(r"[\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]"
 """Characters that steer a terminal or the order of reading, and that JSON need not escape but may."""
 
 
+ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
+"""Made once: json.dumps makes one for each document."""
+
+
 def encode(text: str) -> bytes:
     """A text in UTF-8. What a file's name holds that is no text is written as \\udcxx, in JSON an escape too."""
     return text.encode(errors="backslashreplace")
@@ -69,7 +73,7 @@ def written(
 
 
 def _dumped(value: Any) -> str:
-    text = json.dumps(value, ensure_ascii=False, allow_nan=False)
+    text = ENCODER.encode(value)
     return text if text.isascii() and "\x7f" not in text else STEERING.sub(lambda c: f"\\u{ord(c[0]):04x}", text)
 
 

@@ -234,6 +234,7 @@ ELSEWHERE = {
     ("check", "dh"): {"student", "students", "line", "relative"},
     ("check", "jacobian"): {"student", "students", "line", "relative"},
     ("check", "dof"): {"student", "students", "line", "position", "angle", "relative"},
+    ("serve", None): {"input_id", "status", "notes", "error", "line", "documents"},  # test_serve has them
 }
 """Keys that only other options bring: other orientations, samples, files of a class."""
 

@@ -42,8 +42,9 @@ def test_the_help_of_a_command(call, command):
     assert max(map(len, answer.lines)) <= 80
     assert "Examples:" in answer.lines
     assert "\n\n\n" not in answer.text
-    assert "-f, --format FORMAT" in answer.text
-    assert "-o, --output FILE" in answer.text
+    if command != "serve":  # whose answers are documents
+        assert "-f, --format FORMAT" in answer.text
+        assert "-o, --output FILE" in answer.text
     assert "--json" in answer.text
     for word in ("<str>", "{", "TEXT"):
         assert word not in answer.text

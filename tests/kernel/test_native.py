@@ -14,7 +14,7 @@ import pytest
 from kernel.test_straight_line import configurations, library, random_robots
 
 import robokin
-from robokin.kernel import native_kernel
+from robokin.kernel import native_kernel, native_module
 from robokin.kernel.chain import Chain, chain_of
 from robokin.kernel.frames import program_to_joints, program_to_tool, run
 from robokin.kernel.geometric_jacobian import jacobian_of
@@ -258,6 +258,8 @@ def test_the_kernel_is_chosen_by_the_environment(asked, status, text):
 def test_a_missing_kernel_is_named_where_it_is_insisted_on(monkeypatch):
     monkeypatch.setitem(sys.modules, "robokin.kernel._native", None)
     monkeypatch.delattr("robokin.kernel._native", raising=False)
-    assert native_kernel._loaded("") is None
+    monkeypatch.setenv("ROBOKIN_KERNEL", "")
+    assert native_module.native_module() is None
+    monkeypatch.setenv("ROBOKIN_KERNEL", "native")
     with pytest.raises(robokin.InputError, match="no native kernel"):
-        native_kernel._loaded("native")
+        native_module.native_module()

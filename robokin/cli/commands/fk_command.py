@@ -61,7 +61,7 @@ def command(
         robokin fk anthropomorphic --symbolic
     """
     from robokin.cli.configurations import configurations
-    from robokin.model import Tree
+    from robokin.model import Robot, Tree
     from robokin.records.pose_blocks import PoseMaker
     from robokin.reports.pose_report import RECORD_KEYS, PoseReport, csv_columns
     from robokin.reports.tip_report import TIP_KEYS, TipReport, tip_columns
@@ -104,6 +104,15 @@ def command(
     if not streamed:
         for note in (note for given in blocks for note in maker.outside_notes(given)):
             say(note)
+    if alone and not frames and not as_ and isinstance(subject, Robot):
+        from robokin.quick.plain_poses import KINDS, plain_pose
+
+        (given,) = blocks
+        pose = plain_pose(description.plain(robot, subject), units, given) if kind in KINDS else None
+        if pose is not None:
+            with sink(output.file) as stream:
+                stream.write(pose.written(kind))
+            return 0
     used = cores_worth(most, "-" if input is None else input, MANY) if streamed else 1
     if tree:
         TipReport(tree, maker, orientation, alone, carried).send(output.file, kind, blocks)

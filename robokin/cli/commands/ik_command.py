@@ -132,7 +132,6 @@ def command(
     from robokin.records.solution_records import RECORD_KEYS, SolutionRecords
     from robokin.reports.solution_report import SolutionReport, csv_columns
     from robokin.tables.carried import Carried
-    from robokin.tables.target_rows import Targets
 
     if tips:
         from robokin.cli.tip_target_options import answer_tips, refuse_beside
@@ -187,6 +186,8 @@ def command(
 
             require_lesson(model, arguments["task"])
     else:
+        from robokin.tables.target_rows import Targets
+
         targets = Targets(input, units, orientation_kind(as_), carried, say, plane=flat_arm(model))
         arriving = targets.blocks()
         first = next(arriving, None)  # which says what is asked of the tool

@@ -9,9 +9,6 @@ import typer
 from robokin.cli.option_groups import OutputOptions
 from robokin.cli.statuses import DONE, NO, say
 
-COLUMNS = ("id", "name", "kind", "joints", "dof", "source")
-"""What a CSV has of each entry, and where words are looked for."""
-
 
 def command(
     words: Annotated[
@@ -35,26 +32,13 @@ def command(
         robokin list mechanism --json
         robokin list wheeled
     """
-    from robokin.formats.library_index import library_entries
-    from robokin.formats.library_search import found, nothing_found
-    from robokin.records.envelope import SCHEMA
+    from robokin.quick.library_list import listed
     from robokin.tables.sink import sink
-    from robokin.tables.written_rows import csv_records, written
 
-    kind = output.kind
-    wanted = [part for word in words or [] for part in word.split()]
-    entries = library_entries()
-    records = [{"schema": SCHEMA, **entry.record()} for entry in found(entries, wanted)]
-
-    def page() -> bytes:
-        from robokin.reports.library_table import library_table
-
-        return library_table(records) if records else b""
-
+    data, sentence = listed(words or [], output.kind)
     with sink(output.file) as stream:
-        rows = [[record[name] for name in COLUMNS] for record in records]
-        stream.writelines(written(kind, records, records, lambda: csv_records(COLUMNS, rows), page))
-    if wanted and not records:
-        say(nothing_found(entries, wanted))
+        stream.writelines(data)
+    if sentence:
+        say(sentence)
         return NO
     return DONE

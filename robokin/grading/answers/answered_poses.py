@@ -16,8 +16,9 @@ from robokin.kinematics.structure import structure_of
 from robokin.model import Robot
 from robokin.spatial import nearest_rotation, rotation_error, rotation_from_quaternion, transform
 from robokin.spatial.rotations import DIGITS_LOST
+from robokin.tables.near_targets import near_enough
 from robokin.tables.orientations import MATRIX, ORIENTATIONS, pose_columns
-from robokin.tables.pose_columns import CLEAN, ORDER, near_enough
+from robokin.tables.pose_columns import CLEAN, ORDER
 from robokin.units import Units
 
 QUATERNION_CUT = 0.02

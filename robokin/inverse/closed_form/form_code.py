@@ -13,8 +13,8 @@ from typing import cast
 from robokin.inverse.closed_form.joint_functions import LOOSE, Form
 from robokin.inverse.closed_form.trigonometry import CLAMP, FREE, Turn, normalized, turned
 from robokin.inverse.closed_form.turns import lever_of, zeroed
+from robokin.kernel.code_lines import Term, written
 from robokin.kernel.entries import Entry, Matrix, Vector, angle, applied, minus, plus, root, times
-from robokin.kernel.straight_line import Term, written
 
 
 class NoCodeError(Exception):

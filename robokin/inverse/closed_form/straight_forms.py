@@ -35,6 +35,7 @@ from robokin.inverse.closed_form.spherical_wrist import SphericalTriple, along_g
 from robokin.inverse.closed_form.three_parallel_axes import ThreeParallel
 from robokin.inverse.closed_form.trigonometry import CLAMP, FREE, Turn, turned
 from robokin.inverse.closed_form.turns import lever_of, right_angled
+from robokin.kernel.code_lines import Term, written
 from robokin.kernel.entries import (
     Entry,
     EntryFrame,
@@ -49,7 +50,6 @@ from robokin.kernel.entries import (
     times,
     transposed,
 )
-from robokin.kernel.straight_line import Term, written
 
 Leaves = list[tuple[float, ...]]
 StraightForm = Callable[[list[float]], Leaves | None]

@@ -12,6 +12,7 @@ are free of x restrict v to their null space first.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -24,9 +25,6 @@ NOTHING = 1e-11
 CLEAR = 1e-3
 """A singular value that is greater is not. What lies between is no structure to build on."""
 
-# A leading matrix that is exactly singular is made regular by a relative error of this pattern.
-_JITTER = 1e-13 * np.random.default_rng(0).uniform(-1.0, 1.0, (12, 12))
-
 TOGETHER = 3e-3
 """Roots nearer than this to the next [rad] are told apart by their products. Eigenvectors lose as many digits as
 the distance of their roots has zeros; further apart they are good enough for Newton's steps."""
@@ -35,8 +33,17 @@ the distance of their roots has zeros; further apart they are good enough for Ne
 _TURN_Y = (np.cos(0.4), np.sin(0.4))
 _TURN_W = (np.cos(1.1), np.sin(1.1))
 
-# Columns are mixed before a QR is asked for a rank, lest the first of them depend on each other.
-_MIX = np.random.default_rng(1).normal(size=(8, 6))
+
+@cache
+def _jitter() -> Array:
+    """A relative error (12, 12) that makes a leading matrix regular where it is exactly singular."""
+    return 1e-13 * np.random.default_rng(0).uniform(-1.0, 1.0, (12, 12))
+
+
+@cache
+def _mixture() -> Array:
+    """What columns are mixed by (8, 6) before a QR is asked for a rank, lest the first of them depend on each other."""
+    return np.random.default_rng(1).normal(size=(8, 6))
 
 
 class PencilDegrees(NamedTuple):
@@ -63,7 +70,7 @@ def of_turning(E: Array, turning: Complex, rows: PencilDegrees) -> tuple[Array, 
     E1, Ec, Es = E[:, 0], E[:, 1], E[:, 2]
     basis = None
     if rows.free:
-        real = np.concatenate([turning.real, turning.imag], axis=-1) @ _MIX
+        real = np.concatenate([turning.real, turning.imag], axis=-1) @ _mixture()
         Q = np.swapaxes(np.linalg.qr(real)[0], -1, -2)
         free, P = Q[:, 6 - rows.free :], Q[:, : 6 - rows.free]
         B = _twice(free @ E1)
@@ -116,7 +123,7 @@ def _linearised(L1: Array, L0: Array, M2: Array, M1: Array, M0: Array, basis: Ar
         top = np.linalg.solve(lead, right)
     except np.linalg.LinAlgError:
         scale = np.max(np.abs(lead), axis=(1, 2), keepdims=True) + 1e-300
-        top = np.linalg.solve(lead + scale * _JITTER[:columns, :columns], right)
+        top = np.linalg.solve(lead + scale * _jitter()[:columns, :columns], right)
     bottom = -M1 @ top
     bottom[..., :columns] -= M0
     return np.concatenate([top, bottom], axis=1)

@@ -1,4 +1,4 @@
-/* The native kernel as a module of Python: numpy arrays in, numpy arrays out.
+/* The native kernel as a module of Python: numpy arrays in, numpy arrays out, or plain numbers.
 
    Only for calls from robokin.kernel, which has seen to shapes and types: what is checked here keeps memory safe.
 */
@@ -13,8 +13,8 @@
 
 #include <string.h>
 
-/* As robokin.kernel.native_kernel expects it. */
-#define INTERFACE 2
+/* As robokin.kernel.native_module expects it. */
+#define INTERFACE 3
 
 /* numpy has no more, whatever its version. */
 #define MOST_DIMENSIONS 64
@@ -33,6 +33,10 @@ static void freed(PyObject *capsule) { PyMem_Free(PyCapsule_GetPointer(capsule, 
 
 PyArrayObject *doubles(PyObject *object, int least, PyObject **copy) {
     *copy = NULL;
+    if (!PyArray_API) {
+        PyErr_SetString(PyExc_RuntimeError, "with_arrays() comes first");
+        return NULL;
+    }
     if (!PyArray_Check(object)) {
         PyErr_SetString(PyExc_TypeError, "expected an array");
         return NULL;
@@ -47,6 +51,33 @@ PyArrayObject *doubles(PyObject *object, int least, PyObject **copy) {
         return array;
     *copy = PyArray_FROM_OTF(object, NPY_DOUBLE, NPY_ARRAY_IN_ARRAY | NPY_ARRAY_ENSUREARRAY);
     return (PyArrayObject *)*copy;
+}
+
+/* The handle of a chain: of n + 1 constants m, 4 rows of 4 each, of whether its joints turn, and of their offsets. */
+static PyObject *built(int n, const double *m, const double *turning, const double *at) {
+    Chain *made = PyMem_Malloc(sizeof(Chain));
+    if (!made)
+        return PyErr_NoMemory();
+    memset(made, 0, sizeof(Chain));
+    made->n = n;
+    for (int i = 0; i <= n; i++, m += 16) {
+        double *out = i ? made->links[i - 1].m : made->first;
+        for (int c = 0; c < 4; c++)
+            for (int r = 0; r < 3; r++)
+                out[3 * c + r] = m[4 * r + c];
+        if (!i)
+            continue;
+        Constant *link = &made->links[i - 1];
+        made->revolute[i - 1] = turning[i - 1] != 0.0;
+        made->offsets[i - 1] = at[i - 1];
+        link->shifts = out[9] != 0.0 || out[10] != 0.0 || out[11] != 0.0;
+        for (int j = 0; j < 9; j++)
+            link->turns |= out[j] != (j % 4 ? 0.0 : 1.0);
+    }
+    PyObject *capsule = PyCapsule_New(made, CHAIN, freed);
+    if (!capsule)
+        PyMem_Free(made);
+    return capsule;
 }
 
 static PyObject *chain(PyObject *self, PyObject *const *args, Py_ssize_t count) {
@@ -70,31 +101,7 @@ static PyObject *chain(PyObject *self, PyObject *const *args, Py_ssize_t count) 
         PyErr_SetString(PyExc_ValueError, "arrays of a chain do not fit each other");
         goto end;
     }
-    Chain *made = PyMem_Malloc(sizeof(Chain));
-    if (!made) {
-        PyErr_NoMemory();
-        goto end;
-    }
-    memset(made, 0, sizeof(Chain));
-    made->n = (int)n;
-    const double *m = PyArray_DATA(C), *turning = PyArray_DATA(revolute), *at = PyArray_DATA(offsets);
-    for (int i = 0; i <= n; i++, m += 16) {
-        double *out = i ? made->links[i - 1].m : made->first;
-        for (int c = 0; c < 4; c++)
-            for (int r = 0; r < 3; r++)
-                out[3 * c + r] = m[4 * r + c];
-        if (!i)
-            continue;
-        Constant *link = &made->links[i - 1];
-        made->revolute[i - 1] = turning[i - 1] != 0.0;
-        made->offsets[i - 1] = at[i - 1];
-        link->shifts = out[9] != 0.0 || out[10] != 0.0 || out[11] != 0.0;
-        for (int j = 0; j < 9; j++)
-            link->turns |= out[j] != (j % 4 ? 0.0 : 1.0);
-    }
-    capsule = PyCapsule_New(made, CHAIN, freed);
-    if (!capsule)
-        PyMem_Free(made);
+    capsule = built((int)n, PyArray_DATA(C), PyArray_DATA(revolute), PyArray_DATA(offsets));
 end:
     for (int i = 0; i < 3; i++)
         Py_XDECREF(copies[i]);
@@ -270,6 +277,68 @@ end:
     return both;
 }
 
+/* `count` numbers of a tuple of floats; 0 and an error for anything else. */
+static int numbers(PyObject *tuple, Py_ssize_t count, double *out) {
+    if (!PyTuple_CheckExact(tuple) || PyTuple_Size(tuple) != count) {
+        PyErr_SetString(PyExc_ValueError, "expected a tuple of another length");
+        return 0;
+    }
+    for (Py_ssize_t i = 0; i < count; i++) {
+        PyObject *number = PyTuple_GetItem(tuple, i);
+        if (!PyFloat_CheckExact(number)) {
+            PyErr_SetString(PyExc_TypeError, "expected floats");
+            return 0;
+        }
+        out[i] = PyFloat_AsDouble(number);
+    }
+    return 1;
+}
+
+static PyObject *plain_chain(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    double constants[16 * (MOST_JOINTS + 1)], turning[MOST_JOINTS], offsets[MOST_JOINTS];
+    Py_ssize_t n = count == 3 && PyTuple_CheckExact(args[1]) ? PyTuple_Size(args[1]) : 0;
+    (void)self;
+    if (n < 1 || n > MOST_JOINTS) {
+        PyErr_SetString(PyExc_ValueError, "plain_chain(constants, revolute, offsets)");
+        return NULL;
+    }
+    if (!numbers(args[0], 16 * (n + 1), constants) || !numbers(args[1], n, turning) || !numbers(args[2], n, offsets))
+        return NULL;
+    return built((int)n, constants, turning, offsets);
+}
+
+static PyObject *plain_pose(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    double q[MOST_JOINTS], T[16];
+    const Chain *known = count == 2 ? PyCapsule_GetPointer(args[0], CHAIN) : NULL;
+    (void)self;
+    if (!known) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "plain_pose(chain, q)");
+        return NULL;
+    }
+    if (!numbers(args[1], known->n, q))
+        return NULL;
+    lanes.poses(known, q, 1, T);
+    PyObject *out = PyTuple_New(12);
+    for (int i = 0; out && i < 12; i++) {
+        PyObject *number = PyFloat_FromDouble(T[i]);
+        if (!number || PyTuple_SetItem(out, i, number) < 0)
+            Py_CLEAR(out);
+    }
+    return out;
+}
+
+/* Until it is called the functions of arrays refuse: who has numbers alone need not wait for numpy. */
+static PyObject *with_arrays(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    (void)self, (void)args, (void)count;
+    if (!PyArray_API && _import_array() < 0) {
+        PyErr_Clear();
+        PyErr_SetString(PyExc_ImportError, "the native kernel needs another numpy");
+        return NULL;
+    }
+    Py_RETURN_NONE;
+}
+
 /* The instructions that are used, "base" or "avx2"; another set from now on if its name is given, as tests do. */
 static PyObject *instructions(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     (void)self;
@@ -304,6 +373,9 @@ static PyMethodDef methods[] = {
     {"pose", (PyCFunction)(void (*)(void))pose, METH_FASTCALL, "pose(chain, q[, out]): the tool's poses (..., 4, 4)"},
     {"frames", (PyCFunction)(void (*)(void))frames, METH_FASTCALL, "frames(chain, q[, out]): (..., n + 1, 4, 4)"},
     {"jacobian", (PyCFunction)(void (*)(void))jacobian, METH_FASTCALL, "jacobian(chain, q, size, tool[, out]): (..., 6, n)"},
+    {"with_arrays", (PyCFunction)(void (*)(void))with_arrays, METH_FASTCALL, "with_arrays(): numpy is there from now on"},
+    {"plain_chain", (PyCFunction)(void (*)(void))plain_chain, METH_FASTCALL, "plain_chain(constants, revolute, offsets)"},
+    {"plain_pose", (PyCFunction)(void (*)(void))plain_pose, METH_FASTCALL, "plain_pose(chain, q): twelve numbers"},
     {"errors", (PyCFunction)(void (*)(void))errors, METH_FASTCALL, "errors(chain, T, q, size): (..., 6), (..., 6, n)"},
     {NULL, NULL, 0, NULL},
 };
@@ -320,11 +392,6 @@ static struct PyModuleDef module = {PyModuleDef_HEAD_INIT, "_native", "The nativ
                                     NULL, NULL, NULL, NULL};
 
 PyMODINIT_FUNC PyInit__native(void) {
-    if (_import_array() < 0) {
-        PyErr_Clear();
-        PyErr_SetString(PyExc_ImportError, "the native kernel needs another numpy");
-        return NULL;
-    }
     lanes = base;
 #ifdef ROBOKIN_AVX2
     if (has_avx2()) {

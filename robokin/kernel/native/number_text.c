@@ -228,6 +228,10 @@ static PyObject *rows_in(PyObject *self, PyObject *const *args, Py_ssize_t count
     /* A row has a sign at least between its cells and at its end: what is shorter is none, and takes no memory. */
     if (shape[0] && (size + 1) / shape[0] < table.width)
         Py_RETURN_NONE;
+    if (!PyArray_API) {
+        PyErr_SetString(PyExc_RuntimeError, "with_arrays() comes first");
+        return NULL;
+    }
     PyObject *all = PyArray_EMPTY(2, shape, NPY_DOUBLE, 0), *cells = NULL, *answer = NULL;
     if (!all)
         return NULL;
