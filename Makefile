@@ -56,7 +56,7 @@ test-oldest: $(VENV)-oldest/installed ## a minute's part of the tests with the l
 
 test-newest: $(VENV)/release ## the tests with the newest versions that there are today, without the lock
 	$(PYTHON) -m venv --clear $(VENV)-newest
-	$(BIN)/uv pip install --quiet --python $(VENV)-newest --upgrade --editable '.[plot]' --group test
+	$(BIN)/uv pip install --quiet --python $(VENV)-newest --upgrade --editable '.[plot,cluster]' --group test
 	$(VENV)-newest/bin/$(PYTEST)
 
 lint: $(VENV)/dev ## style and types
@@ -91,7 +91,7 @@ docs: $(VENV)/dev ## rerun every command of README.md and docs/, and write what 
 # One resolution for all: what is pinned for developers is what users and releases get.
 COMPILE := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --upgrade --custom-compile-command 'make lock'
 lock: $(VENV)/release ## renew the locks in .ci/requirements/ with today's versions
-	$(BIN)/$(COMPILE) -o .ci/requirements/dev.txt pyproject.toml --extra plot --group dev
+	$(BIN)/$(COMPILE) -o .ci/requirements/dev.txt pyproject.toml --extra plot --extra cluster --group dev
 	$(BIN)/$(COMPILE) -o .ci/requirements/user.txt pyproject.toml --constraint .ci/requirements/dev.txt
 	$(BIN)/$(COMPILE) -o .ci/requirements/build.txt --group build --constraint .ci/requirements/dev.txt
 	$(BIN)/$(COMPILE) -o .ci/requirements/release.txt --group release --constraint .ci/requirements/dev.txt

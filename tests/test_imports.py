@@ -32,7 +32,10 @@ CALCULATING = [
     "errors", "arrays", "expected", "units", "number_text", "brief", "rotation_entries", "spatial", "model",
     "kernel", "jobs", "assembly", "kinematics", "inverse", "workspace", "mobility", "derivation", "grading",
 ]  # fmt: skip
-HOMES = {"yaml": "formats", "typer": "cli", "rich": "reports", "matplotlib": "pictures"}
+HOMES = {
+    "yaml": "formats", "typer": "cli", "rich": "reports", "matplotlib": "pictures", "pyarrow": "tables", "dask": "jobs",
+    "distributed": "jobs",
+}  # fmt: skip
 
 ONE_NAME_EACH = {"__init__.py", "__main__.py"}
 

@@ -31,10 +31,13 @@ def group(name):
 
 USER = [Requirement(text) for text in PROJECT["project"]["dependencies"]]
 PLOT = [Requirement(text) for text in PROJECT["project"]["optional-dependencies"]["plot"]]
+FAR = [
+    Requirement(text) for name in ("parquet", "cluster") for text in PROJECT["project"]["optional-dependencies"][name]
+]
 ASKED = {
     "user": USER,
     "build": group("build"),
-    "dev": USER + PLOT + group("dev"),
+    "dev": USER + PLOT + FAR + group("dev"),
     "release": group("release"),
     "oldest": USER + PLOT + group("test"),
 }
@@ -92,7 +95,16 @@ def test_the_oldest_versions_are_the_lower_bounds_themselves():
 
 
 def test_a_users_installation_has_no_tools_of_development():
-    assert not versions("user").keys() & {"pytest", "hypothesis", "mypy", "ruff", "matplotlib", "hatchling", "uv"}
+    assert not versions("user").keys() & {
+        "pytest",
+        "hypothesis",
+        "mypy",
+        "ruff",
+        "matplotlib",
+        "hatchling",
+        "uv",
+        "dask",
+    }
 
 
 def test_the_build_backend_is_the_one_that_was_run():

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
+from robokin.cli.cluster_options import ClusterOption
 from robokin.cli.cores import CoresOption, whole_cores
 from robokin.cli.option_groups import DescriptionOptions, OptionGroup, OutputOptions
 from robokin.cli.options import SetOption, choose, option
@@ -38,16 +39,19 @@ class AnswerFileOptions(OptionGroup):
     """A file of answers, in place of those that options say."""
 
     input: Annotated[
-        str | None, option("--input -i", "FILE", "A CSV of answers with a header; - for standard input.")
+        str | None, option("--input -i", "FILE", "A CSV of answers with a header, or a .parquet; - for standard input.")
     ] = None
     key: Annotated[str | None, option("--key", "FILE", "With --input: a CSV of the questions, by the same ids.")] = None
     follow: FollowOption = False
+    cluster: ClusterOption = None
 
     def refuse_beside(self, options: dict[str, object]) -> None:
         """Raise InputError where answers come from options and from a file."""
         given = [name for name, value in options.items() if value]
         if self.input is not None and given:
             raise InputError(f"--input and {given[0]} exclude each other, expected one of them")
+        if self.input is None and self.cluster is not None:
+            raise InputError("--cluster goes with --input, a file of many answers")
         if self.input is None and self.key is not None:
             raise InputError("--key goes with --input, the file of the answers")
         if self.input == "-" == self.key:

@@ -7,10 +7,13 @@ into the command's signature, for the parser and the help, and hands the command
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, get_type_hints
 
 from robokin.cli.options import (
+    FORMATS,
+    ROW_FORMATS,
     AngleOption,
     ArrayOutputOption,
     ExactOption,
@@ -20,6 +23,8 @@ from robokin.cli.options import (
     OutputOption,
     PackageOption,
     RootOption,
+    RowFormatOption,
+    RowOutputOption,
     SetOption,
     TipOption,
     effective_units,
@@ -50,20 +55,20 @@ class OutputOptions(OptionGroup):
     format: FormatOption = None
     json: JsonOption = False
 
-    arrays = False
-    """Whether the answer can be an array."""
+    arrays = rows = False
+    """Whether the answer can be an array, and whether it can be a table of rows."""
 
     @property
     def chosen(self) -> str | None:
         """The format that --format and --json ask for; None when neither does. Raises InputError."""
-        return output_format(self.format, self.json)
+        return output_format(self.format, self.json, ROW_FORMATS if self.rows else FORMATS)
 
     @property
     def kind(self) -> str:
         """The format: that of the output's ending, else the chosen one, else a table. Raises InputError."""
         from robokin.tables.sink import format_of
 
-        return format_of(self.file, self.chosen, arrays=self.arrays)
+        return format_of(self.file, self.chosen, arrays=self.arrays, rows=self.rows)
 
 
 class ArrayOutputOptions(OutputOptions):
@@ -72,6 +77,40 @@ class ArrayOutputOptions(OutputOptions):
     file: ArrayOutputOption = None
 
     arrays = True
+
+
+class RowOutputOptions(ArrayOutputOptions):
+    """Where an answer goes that can be an array, or a table of rows for programs that calculate with columns."""
+
+    file: RowOutputOption = None
+    format: RowFormatOption = None
+
+    rows = True
+
+    @property
+    def kind(self) -> str:
+        """The format, Parquet for a folder of parts. Raises InputError, also for bytes that would go to a terminal."""
+        if self.folder:
+            if self.chosen not in (None, "parquet"):
+                said = f"--output {self.file} and --format {self.chosen} say different things"
+                raise InputError(f"{said}, expected one of them: parts are Parquet files")
+            kind = "parquet"
+        else:
+            kind = super().kind
+        if kind in ROW_FORMATS and kind not in FORMATS:
+            from robokin.tables.arrow_library import pyarrow
+
+            pyarrow()  # where it is missing that is said before any work is done
+            if self.file is None and sys.stdout is not None and sys.stdout.isatty():
+                raise InputError(f"--format {kind}: standard output is a terminal, expected --output FILE or a pipe")
+        return kind
+
+    @property
+    def folder(self) -> bool:
+        """Whether the answer goes to a folder of parts."""
+        from robokin.tables.sink import is_folder
+
+        return is_folder(self.file)
 
 
 class UnitOptions(OptionGroup):

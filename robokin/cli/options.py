@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Annotated, Any
 
@@ -12,6 +13,12 @@ from robokin.errors import InputError, did_you_mean, or_list, shown
 from robokin.units import METRES, RADIANS, Units
 
 FORMATS = ("table", "json", "jsonl", "csv")
+ROW_FORMATS = (*FORMATS, "parquet", "arrow")
+TABLES = ("csv", "parquet", "arrow")
+"""Formats with a row an answer, and the same columns."""
+POWER = re.compile(r"([0-9]{1,24})[eE]([0-9]{1,2})")
+"""A whole number with a power of ten: 1e9."""
+
 ORIENTATIONS = ("rpy", "quaternion", "euler", "matrix")
 
 
@@ -31,6 +38,12 @@ RobotArgument = Annotated[
 ]
 FormatOption = Annotated[
     str | None, option("--format -f", "FORMAT", "table, json, jsonl or csv.  [default: table]", words(*FORMATS))
+]
+RowFormatOption = Annotated[
+    str | None,
+    option(
+        "--format -f", "FORMAT", "table, json, jsonl, csv, parquet or arrow.  [default: table]", words(*ROW_FORMATS)
+    ),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Short for -f json.", show_default=False)]
 AngleOption = Annotated[str | None, option("--angle", "UNIT", "Angles in deg or rad, in and out.", words(*RADIANS))]
@@ -59,6 +72,10 @@ OutputOption = Annotated[
 ]
 ArrayOutputOption = Annotated[
     str | None, option("--output -o", "FILE", "Write to a file, by its ending: .csv, .jsonl, .json or .npy.")
+]
+RowOutputOption = Annotated[
+    str | None,
+    option("--output -o", "FILE", "Write to a file, by its ending: .csv, .jsonl, .json, .npy, .parquet or .arrow."),
 ]
 AsOption = Annotated[
     str | None,
@@ -90,9 +107,9 @@ def orientation_kind(value: str | None) -> str | None:
     return choose(SHORT.get(value, value) if value else value, KINDS, "--as")
 
 
-def output_format(format: str | None, json: bool) -> str | None:
+def output_format(format: str | None, json: bool, formats: tuple[str, ...] = FORMATS) -> str | None:
     """The format that --format and --json ask for together; None when neither does."""
-    chosen = choose(format, FORMATS, "--format")
+    chosen = choose(format, formats, "--format")
     if json and chosen not in (None, "json"):
         raise InputError(f"--json and --format {chosen} exclude each other, expected one of them")
     return "json" if json else chosen
@@ -126,10 +143,15 @@ def package_folders(settings: list[str] | None) -> dict[str, str]:
 
 
 def whole_number(text: str | None, option: str, least: int, most: int, *, grouped: bool = False) -> int | None:
-    """A whole number within bounds, None for none; `grouped` digits may have _ between them. Raises InputError."""
+    """A whole number within bounds, None for none. Raises InputError.
+
+    `grouped` digits may have _ between them, and a power of ten behind them: 1e9.
+    """
     if text is None:
         return None
     digits = text.strip().replace("_", "") if grouped else text.strip()
+    if grouped and (power := POWER.fullmatch(digits)):
+        digits = power[1] + "0" * int(power[2])
     if not (digits.isascii() and digits.isdecimal() and len(digits) < 25) or not least <= int(digits) <= most:
         limit = f"of {least} or more" if most >= 2**62 else f"from {least} to {most}"
         raise InputError(f"{option}: found '{shown(text)}', expected a whole number {limit}")

@@ -41,14 +41,17 @@ class Progress:
             _write("\r\033[K")
         self.interrupted.__exit__(None, None, None)
 
-    def told(self, done: int, total: int) -> None:
-        """`done` of `total` are done."""
+    def told(self, done: int, total: int | None) -> None:
+        """`done` of `total` are done; None where nobody knows how many there will be."""
         now = time.monotonic()
         if self.first is None:
             self.first, self.began = done, now  # what was there before took no time
         if now - self.began < PATIENCE or now - self.shown < REST or not _terminal():
             return
         self.shown = now
+        if total is None:
+            _write(f"\r\033[K{done:,} {self.noun}, {now - self.began:.0f} s")
+            return
         rate = (done - self.first) / (now - self.began)
         left = (total - done) / rate if rate else 0.0
         full = round(WIDTH * done / total) if total else WIDTH

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from robokin.errors import InputError
+from robokin.cli.options import FORMATS, ROW_FORMATS
+from robokin.errors import InputError, or_list
 from robokin.tables.sink import format_of
 
 ENDINGS = {".tex": "latex", ".py": "python"}
@@ -29,6 +30,8 @@ def form_of(output: str | None, chosen: str | None, *, latex: bool, python: bool
         raise InputError("--latex and --python exclude each other, expected one of them")
     if asked and chosen is not None:
         raise InputError(f"--{asked[0]} and --format {chosen} exclude each other, expected one of them")
+    if chosen in ROW_FORMATS and chosen not in FORMATS:
+        raise InputError(f"--symbolic: found the format {chosen}, expected {or_list(FORMATS)}")
     ending = ENDINGS.get(Path(output).suffix.lower()) if output is not None else None
     if output is not None and asked and ending != asked[0]:
         expected = next(name for name, form in ENDINGS.items() if form == asked[0])

@@ -15,7 +15,8 @@ from robokin.grading.feedback import Words, alike, joined
 from robokin.grading.mark_items import NOT_DECIDED, Item, Report
 from robokin.grading.mistakes import Mistake
 from robokin.grading.tolerance import Tolerance
-from robokin.jobs.guarded import BUDGET, Overrun, guarded
+from robokin.jobs.executors import lent_executor
+from robokin.jobs.guarded import BUDGET, Overrun, guarded, shared_out
 from robokin.jobs.ordered_map import usable_cores
 from robokin.model import Robot
 from robokin.model.joint_units import in_units, joint_factors
@@ -159,7 +160,9 @@ def marked(subject: Subject, tasks: Sequence[AnswerTask], rules: Rules) -> Itera
         return
     # Asked to end, the program first ends the process that works on the answers.
     cores = min(rules.cores or usable_cores(), max(len(tasks) // FEW, 1))
-    with in_order(), contextlib.closing(guarded(subject.mark, tasks, rules.budget, cores)) as outcomes:
+    away = lent_executor() is not None
+    work = shared_out(subject.mark, tasks, rules.budget) if away else guarded(subject.mark, tasks, rules.budget, cores)
+    with in_order(), contextlib.closing(work) as outcomes:
         for task, outcome in zip(tasks, outcomes, strict=True):
             if isinstance(outcome, Overrun):
                 yield task.item(NOT_DECIDED, 0.0, undecided(outcome.why), more=dict(subject.unsaid))

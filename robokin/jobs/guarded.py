@@ -19,10 +19,11 @@ import sys
 import warnings
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robokin.errors import RobokinError
-from robokin.jobs.ordered_map import default_signals, no_interrupt
+from robokin.jobs.ordered_map import WorkerError, default_signals, no_interrupt, ordered_map
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -39,6 +40,9 @@ MEMORY = 1 << 30
 
 PATIENCE = 3.0
 """So many times the budget, and a second, may pass on the clock: other processes may have the processor meanwhile."""
+
+SHARE = 64
+"""Answers that a worker of a cluster marks at a time."""
 
 LINUX = sys.platform.startswith("linux")
 
@@ -65,6 +69,26 @@ def guarded(
             if isinstance(outcome, Exception):
                 raise outcome
             yield outcome
+
+
+def shared_out(
+    function: Callable[[Task], Result], tasks: Sequence[Task], budget: float
+) -> Generator[Result | Overrun, None, None]:
+    """The same from the workers of an executor that is lent, each of which starts a process for its share of tasks."""
+    shares = [tasks[first : first + SHARE] for first in range(0, len(tasks), SHARE)]
+    for outcomes in ordered_map(partial(_share, function, budget), shares):
+        yield from outcomes
+
+
+def _share(function: Callable[[Any], Any], budget: float, tasks: Sequence[Any]) -> list[Any]:
+    from multiprocessing import current_process
+
+    if current_process().daemon:
+        raise WorkerError(
+            "the workers of the cluster may start no processes, which answers are marked in, expected workers with "
+            "DASK_DISTRIBUTED__WORKER__DAEMON=False"
+        )
+    return list(guarded(function, tasks, budget))
 
 
 class _Lane:

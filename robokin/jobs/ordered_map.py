@@ -1,9 +1,9 @@
 """A function of many blocks on several cores, its results in the blocks' order whatever the number of cores.
 
-The workers are those of `concurrent.futures`. Processes are forked where that is safe, so that the function may be
-anything and starts with all that has been prepared. Elsewhere (Windows, macOS) threads do the work, for numpy lets go
-of the interpreter's lock, or fresh processes for a program that may be started again: the function must then pickle,
-and a script needs its `if __name__ == "__main__":`.
+The workers are those of `concurrent.futures`, or of an executor that is lent. Processes are forked where that is safe,
+so that the function may be anything and starts with all that has been prepared. Elsewhere (Windows, macOS) threads do
+the work, for numpy lets go of the interpreter's lock, or fresh processes for a program that may be started again: the
+function must then pickle, and a script needs its `if __name__ == "__main__":`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,9 @@ from itertools import chain, islice
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from robokin.errors import InputError, RobokinError
+from robokin.jobs.executors import lent_executor, lent_pool
 from robokin.jobs.stages import counted
+from robokin.jobs.worker_threads import here, in_worker
 
 if TYPE_CHECKING:
     from concurrent.futures import Future, ProcessPoolExecutor
@@ -39,6 +41,9 @@ AHEAD = 4
 
 GRACE = 1.0
 """Seconds that a worker between two blocks has to end by itself before it is ended."""
+
+
+ENDED = "a worker process was ended from outside, expected more memory or fewer cores"
 
 
 class WorkerError(RobokinError):
@@ -65,25 +70,52 @@ def ordered_map(
     taken, `AHEAD` for each core for None. workers: "processes" are forked or else fresh ones, "threads" share this
     process, "auto" forks or else takes threads. With one core, or fewer than two blocks, and inside a worker, all is
     done here. Blocks and results travel between processes and so must pickle. An error of the function, or of what the
-    blocks are drawn from, is raised here in its block's turn. Raises InputError for less than one core, WorkerError
-    when a worker was ended from outside (as a system short of memory does).
+    blocks are drawn from, is raised here in its block's turn. Where an executor is lent (executors.py) it works on what
+    does not share this process, whatever the number of cores, unless that is one. Raises InputError for less than one
+    core, WorkerError when a worker was ended from outside (as a system short of memory does).
     """
+    return _mapped(_in_turn, function, blocks, cores, window, workers)
+
+
+def finished_map(
+    function: Callable[[Block], Result], blocks: Iterable[Block], cores: int | None = None
+) -> Iterator[Result]:
+    """The same results as they are finished, in whatever order: for work that is put in its place elsewhere.
+
+    A block that takes long holds up no other one's result. Raises as `ordered_map` does, but for the order.
+    """
+    return _mapped(_as_finished, function, blocks, cores, None, "processes")
+
+
+def _mapped(
+    taken: Callable[[Callable[[], Any], Iterator[Any], int], Iterator[Any]],
+    function: Callable[[Any], Any],
+    blocks: Iterable[Any],
+    cores: int | None,
+    window: int | None,
+    workers: Workers,
+) -> Iterator[Any]:
+    """The results of a function of blocks, in the order in which `taken` takes them from a pool."""
     if cores is not None and cores < 1:
         raise InputError(f"found {cores} cores, expected at least 1")
     total = len(blocks) if isinstance(blocks, Sized) else None
+    lent = None if workers == "threads" or cores == 1 or in_worker() else lent_executor()
     waiting = iter(blocks)
-    first: list[Block] = []
+    first: list[Any] = []
     try:
-        first.extend(islice(waiting, cores or usable_cores()))
+        first.extend(islice(waiting, 2 if lent else cores or usable_cores()))
     except Exception as error:
         waiting = _raising(error)
     drawn = chain(first, waiting)
-    if len(first) < 2 or _in_worker():
+    if len(first) < 2 or in_worker():
         return counted(map(function, drawn), total)
+    if lent is not None:
+        ahead = max(window or 0, AHEAD * lent.workers)
+        return counted(taken(partial(lent_pool, lent.executor, function), drawn, ahead), total)
     several = len(first)
     threads = workers == "threads" or (workers == "auto" and not _can_fork())
     pool = _thread_pool if threads else _process_pool
-    return counted(_in_turn(partial(pool, function, several), drawn, window or AHEAD * several), total)
+    return counted(taken(partial(pool, function, several), drawn, window or AHEAD * several), total)
 
 
 def _in_turn(pool: Callable[[], Any], blocks: Iterator[Block], window: int) -> Iterator[Any]:
@@ -107,8 +139,34 @@ def _in_turn(pool: Callable[[], Any], blocks: Iterator[Block], window: int) -> I
                 yield under_way.popleft().result()
             yield from blocks  # there are no more, or what is wrong with the next one is said
     except BrokenExecutor:
-        sentence = "a worker process was ended from outside, expected more memory or fewer cores"
-        raise WorkerError(sentence) from None
+        raise WorkerError(ENDED) from None
+
+
+def _as_finished(pool: Callable[[], Any], blocks: Iterator[Any], window: int) -> Iterator[Any]:
+    """The results of blocks that a pool's workers take, each when it is there, at most `window` under way."""
+    from concurrent.futures import BrokenExecutor
+    from queue import SimpleQueue
+
+    finished: SimpleQueue[Any] = SimpleQueue()
+    under_way: set[Any] = set()
+    try:
+        with pool() as submit:
+            for block in blocks:
+                under_way.add(promise := submit(block))
+                promise.add_done_callback(finished.put)
+                del promise
+                if len(under_way) >= window:
+                    yield _next_finished(finished, under_way)
+            while under_way:
+                yield _next_finished(finished, under_way)
+    except BrokenExecutor:
+        raise WorkerError(ENDED) from None
+
+
+def _next_finished(finished: Any, under_way: set[Any]) -> Any:
+    promise = finished.get()
+    under_way.discard(promise)
+    return promise.result()
 
 
 def _raising(error: Exception) -> Iterator[Any]:
@@ -186,25 +244,8 @@ def default_signals() -> None:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
 
 
-class _Here(threading.local):
-    """What a thread is: a worker has a core of its own and no more."""
-
-    worker = False
-    function: Callable[[Any], Any]
-    between: threading.Lock
-    """Held by a worker process but for the time in which it works at a block: it may be handing back a result."""
-
-
-_here = _Here()
-
-
-def _in_worker() -> bool:
-    process = sys.modules.get("multiprocessing.process")
-    return _here.worker or (process is not None and bool(process.current_process().daemon))
-
-
 def _begin_thread() -> None:
-    _here.worker = True
+    here.worker = True
 
 
 def _begin_process(
@@ -214,9 +255,9 @@ def _begin_process(
     default_signals()
     if other is not None:
         other.close()
-    _here.worker, _here.function, _here.between = True, function, threading.Lock()
-    _here.between.acquire()
-    threading.Thread(target=_end_when_told, args=(told, _here.between), daemon=True).start()
+    here.worker, here.function, here.between = True, function, threading.Lock()
+    here.between.acquire()
+    threading.Thread(target=_end_when_told, args=(told, here.between), daemon=True).start()
 
 
 def _end_when_told(told: Connection[Any, Any], between: threading.Lock) -> None:
@@ -232,13 +273,14 @@ def _end_when_told(told: Connection[Any, Any], between: threading.Lock) -> None:
 
 def _work(block: Any) -> Any:
     """A worker process works at a block."""
-    _here.between.release()
+    here.between.release()
     try:
-        return _here.function(block)
+        return here.function(block)
     except Exception as error:
-        raise _portable(error) from None
+        wrong = _portable(error)
     finally:
-        _here.between.acquire()
+        here.between.acquire()
+    raise wrong  # not within the handler, whose error might travel with it
 
 
 def _portable(error: Exception) -> Exception:

@@ -8,9 +8,12 @@ from collections.abc import Iterable, Iterator
 from typing import IO, TYPE_CHECKING, Any
 
 from robokin.arrays import Array
+from robokin.model import Robot
+from robokin.tables.arrow_library import KINDS
 from robokin.tables.carried import Carried
 from robokin.tables.sink import sink
 from robokin.tables.written_rows import json_document, json_line, json_list
+from robokin.units import Units
 
 if TYPE_CHECKING:
     from robokin.jobs.ordered_map import Workers
@@ -22,10 +25,16 @@ class AnswerStream(ABC):
     alone: bool
     """Whether one question was asked, so that JSON is one document and text a page."""
 
+    carried: Carried
+    """What goes through from the input."""
+
     def write(self, kind: str, blocks: Iterable[Array], stream: IO[bytes]) -> Iterator[bytes]:
         """The answers to blocks in a format, piece by piece; arrays go to the stream themselves."""
         if kind == "npy":
             self.npy(blocks, stream)
+            return iter(())
+        if kind in KINDS:
+            self.arrow(kind, blocks, stream)
             return iter(())
         return {"csv": self.csv, "jsonl": self.jsonl, "json": self.json, "table": self.table}[kind](blocks)
 
@@ -52,6 +61,17 @@ class AnswerStream(ABC):
     def table(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """The answers for eyes."""
 
+    @property
+    @abstractmethod
+    def about(self) -> dict[str, Any]:
+        """What a file says of the answers beside its columns: the robot, and the units."""
+
+    def arrow(self, kind: str, blocks: Iterable[Array], stream: IO[bytes]) -> int:
+        """The answers as a Parquet or an Arrow file: the columns of the CSV, each with a type; the number of rows."""
+        from robokin.tables.arrow_writer import write_csv_as
+
+        return write_csv_as(kind, self.write("csv", blocks, stream), stream, self.carried, self.about)
+
     def json(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """One document, or a list of them."""
         if not self.alone:
@@ -64,23 +84,31 @@ class AnswerStream(ABC):
 
 
 class SharedStream(AnswerStream):
-    """The same where several cores may share long files."""
+    """The same about a robot, where several cores may share long files."""
 
-    carried: Carried
-    """What goes through from the input."""
+    @property
+    @abstractmethod
+    def robot(self) -> Robot:
+        """The robot that is asked about."""
+
+    @property
+    @abstractmethod
+    def units(self) -> Units:
+        """The units of what comes out."""
 
     cores: int | None
     """How many share the blocks; None for all."""
 
     def write(self, kind: str, blocks: Iterable[Array], stream: IO[bytes]) -> Iterator[bytes]:
         """The answers to blocks in a format, piece by piece; the same bytes on any number of cores."""
-        if kind == "npy" or self.cores == 1:
+        if kind in ("npy", *KINDS) or self.cores == 1:
             yield from super().write(kind, blocks, stream)
             return
         from robokin.reports.shared_blocks import blocks_written
 
         total = 0
-        for data, rows, found in blocks_written(self.part, kind, blocks, self.carried, self.cores, self.workers(kind)):
+        shared = blocks_written(self.bare().part, kind, blocks, self.carried, self.cores, self.workers(kind))
+        for data, rows, found in shared:
             total += rows
             if rows:
                 self.add(rows, found)
@@ -98,8 +126,16 @@ class SharedStream(AnswerStream):
         return b"".join(own.write(kind, [block], io.BytesIO())), own.found
 
     @abstractmethod
+    def bare(self) -> SharedStream:
+        """The same without what is carried, which travels with each block."""
+
+    @abstractmethod
     def from_number(self, first: int, carried: Carried) -> SharedStream:
         """The same on one core, for the questions behind the first ones, under what stands above all answers."""
+
+    @abstractmethod
+    def alone_from(self, first: int, carried: Carried) -> SharedStream:
+        """The same, with what stands above all answers: for those of a file of their own."""
 
     @property
     @abstractmethod

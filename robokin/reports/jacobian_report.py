@@ -14,8 +14,10 @@ from robokin.kinematics.jacobian import jacobian
 from robokin.kinematics.velocity import Differential, differential_kinematics
 from robokin.model.joint_units import joint_factors
 from robokin.number_text import show
+from robokin.records.envelope import envelope
 from robokin.records.jacobian_records import JacobianRecords
 from robokin.reports.answer_stream import AnswerStream
+from robokin.tables.arrow_library import KINDS
 from robokin.tables.carried import Carried, nothing
 from robokin.tables.written_rows import csv_header, csv_records, page
 
@@ -31,7 +33,7 @@ def _columns(n: int) -> list[str]:
 
 def taken_by(kind: str, n: int) -> list[str]:
     """The names that an answer has itself, in CSV or in JSON."""
-    if kind == "csv":
+    if kind in ("csv", *KINDS):
         values = [f"sigma{i}" for i in range(1, n + 1)]
         torques = [f"tau{i}" for i in range(1, n + 1)]
         return [*_columns(n), "rank", *values, "manipulability", "condition", *torques]
@@ -50,6 +52,11 @@ class JacobianReport(AnswerStream):
     records: JacobianRecords
     alone: bool
     carried: Carried = field(default_factory=nothing)
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """What a file says of the answers beside its columns."""
+        return envelope("robot", self.records.robot.id, self.records.units)
 
     def found(self, blocks: Iterable[Array]) -> Iterator[tuple[Array, Differential]]:
         """Each block with its answers. Raises InputError where a number is too large."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.model import Robot
+from robokin.records.envelope import envelope
 from robokin.records.pose_blocks import PoseMaker
 from robokin.records.pose_records import PoseBlock, configuration_records
 from robokin.reports.answer_stream import SharedStream
@@ -57,9 +58,22 @@ class PoseReport(SharedStream):
         """The units of what goes in and out."""
         return self.maker.units
 
+    @property
+    def about(self) -> dict[str, Any]:
+        """What a file says of the answers beside its columns."""
+        return envelope("robot", self.robot.id, self.units)
+
     def from_number(self, first: int, carried: Carried) -> PoseReport:
         """The same for the configurations behind the first ones."""
         return replace(self, maker=self.maker.from_number(first), carried=carried, begun=first > 0, cores=1)
+
+    def alone_from(self, first: int, carried: Carried) -> PoseReport:
+        """The same, with what stands above all answers."""
+        return replace(self.from_number(first, carried), begun=False)
+
+    def bare(self) -> PoseReport:
+        """The same without what is carried."""
+        return replace(self, carried=nothing())
 
     def workers(self, kind: str) -> Workers:
         """Threads where the native kernel does the work: it lets go of the interpreter's lock."""
@@ -93,6 +107,20 @@ class PoseReport(SharedStream):
             begun = True
         if not begun:
             yield self.carried.before(csv_header(columns), b"")
+
+    def arrow(self, kind: str, blocks: Iterable[Array], stream: IO[bytes]) -> int:
+        """The columns of the CSV; the number of rows. Text in between would take several times as long."""
+        from robokin.tables.arrow_writer import ArrowWriter, columns_of
+
+        columns, writer = csv_columns(self.robot, self.orientation), None
+        for poses in self.maker.of(blocks):
+            table = np.concatenate([poses.q, pose_table(poses.T, self.orientation or "rpy", self.units)], axis=1)
+            if writer is None:
+                named = columns_of([*self.carried.names, *columns], self.carried)
+                writer = ArrowWriter(stream, kind, named, self.about)
+            writer.columns([*self.carried.columns(len(table)), *np.ascontiguousarray(table.T)])
+        named = columns_of([*self.carried.names, *columns], self.carried)
+        return (writer or ArrowWriter(stream, kind, named, self.about)).close()
 
     def shared(self, answers: Iterable[Array]) -> Iterator[PoseBlock]:
         """The poses of each block, by as many threads as there are cores to use."""

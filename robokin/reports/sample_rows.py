@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import io
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -18,13 +18,14 @@ from robokin.jobs.sequences import Kind
 from robokin.kinematics.forward import forward_kinematics
 from robokin.model.joint_units import joint_factors
 from robokin.records.envelope import envelope
+from robokin.tables.arrow_library import ENDINGS as ARROW_ENDINGS
 from robokin.tables.orientations import orientation, orientation_columns
 from robokin.tables.written_rows import csv_header, csv_rows, json_line
 from robokin.units import Units
-from robokin.workspace.sampling import joint_values, positions, sample_count
+from robokin.workspace.sampling import TASK, joint_values, positions, sample_count
 from robokin.workspace.space import Space
 
-ENDINGS = {".csv": "csv", ".jsonl": "jsonl", ".npy": "npy", ".ply": "ply"}
+ENDINGS = {".csv": "csv", ".jsonl": "jsonl", ".npy": "npy", ".ply": "ply", **ARROW_ENDINGS}
 """Formats by the ending of the output's name."""
 
 BLOCK = 1 << 14
@@ -35,7 +36,7 @@ def sample_format(output: str) -> str:
     """The format of a file of samples, by its name's ending. Raises InputError."""
     kind = ENDINGS.get(Path(output).suffix.lower())
     if kind is None:
-        raise InputError(f"--output: found '{output}', expected a name that ends with {or_list(ENDINGS)}")
+        raise InputError(f"--output: found '{output}', expected a name that ends with {or_list(ENDINGS)}, or a folder/")
     return kind
 
 
@@ -43,9 +44,9 @@ def sample_format(output: str) -> str:
 class Samples:
     """What a file of samples holds.
 
-    kind: csv, jsonl, npy or ply; sampling, seed and samples as everywhere; joints: whether each position comes with
-    its joint values; orientation: rpy, quaternion, euler or matrix where it comes with the tool's orientation, else
-    None. Lengths and angles are in the units.
+    kind: csv, jsonl, npy, ply, parquet or arrow; sampling, seed and samples as everywhere; joints: whether each
+    position comes with its joint values; orientation: rpy, quaternion, euler or matrix where it comes with the tool's
+    orientation, else None. Lengths and angles are in the units.
     """
 
     space: Space
@@ -102,6 +103,13 @@ class Samples:
         """The bytes of block `number`."""
         start = number * BLOCK
         count = min(BLOCK, self.count - start)
+        if self.kind == "jsonl":
+            return self._lines(*self._values(start, count))
+        table = self.table(start, count)
+        return csv_rows(table) if self.kind == "csv" else np.ascontiguousarray(table, dtype="<f8").tobytes()
+
+    def _values(self, start: int, count: int) -> tuple[Array, Array, Array | None]:
+        """Joint values, positions and, where they are asked for, poses of some samples, in the units."""
         q = joint_values(self.space, self.sampling, self.seed, start, count, self.samples, self.every)
         p = positions(self.space, q).T / self.units.metres + 0.0
         values = q.T / joint_factors(self.space.robot, self.units) + 0.0
@@ -110,13 +118,30 @@ class Samples:
             T = forward_kinematics(self.space.robot, q.T)
             T[:, :3, 3] = p
             T += 0.0
-        if self.kind == "jsonl":
-            return self._lines(values, p, T)
+        return values, p, T
+
+    def table(self, start: int, count: int) -> Array:
+        """(count, k) the samples from one on, in their columns."""
+        values, p, T = self._values(start, count)
         turned = [orientation(T, self.orientation, self.units)] if T is not None and self.orientation else []
         joints = [values] if self.joints else []
         parts = [p, *turned, *joints] if self.kind == "ply" else [*joints, p, *turned]
-        table = np.concatenate(parts, axis=1)
-        return csv_rows(table) if self.kind == "csv" else np.ascontiguousarray(table, dtype="<f8").tobytes()
+        return np.concatenate(parts, axis=1)
+
+    def write_rows(self, stream: IO[bytes], kind: str, tables: Iterable[Array]) -> int:
+        """Write tables of samples as a Parquet or an Arrow file; the number of rows."""
+        from robokin.tables.arrow_writer import ArrowWriter
+
+        about = envelope("robot", self.space.robot.id, self.units)
+        writer = ArrowWriter(stream, kind, [(name, "number") for name in self.columns], about)
+        for table in tables:
+            writer.columns(np.ascontiguousarray(table.T))
+        return writer.close()
+
+    def tables(self, first: int, count: int) -> Iterator[Array]:
+        """The samples from one on, some at a time."""
+        end = first + count
+        return (self.table(start, min(TASK, end - start)) for start in range(first, end, TASK))
 
     def _lines(self, q: Array, p: Array, T: Array | None) -> bytes:
         """A JSON document a line."""

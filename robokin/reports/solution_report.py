@@ -15,10 +15,12 @@ from robokin.inverse.solutions import BatchResult, Result
 from robokin.inverse.solve import solve_many
 from robokin.inverse.within_tolerance import within_tolerance
 from robokin.model import Robot
+from robokin.records.envelope import envelope
 from robokin.records.solution_records import SolutionRecords
 from robokin.reports.answer_stream import SharedStream
 from robokin.tables.carried import Carried, nothing
 from robokin.tables.written_rows import csv_header, csv_records
+from robokin.units import Units
 
 if TYPE_CHECKING:
     from robokin.records.worked_step_records import Explanation
@@ -59,9 +61,27 @@ class SolutionReport(SharedStream):
         """The robot that is asked about."""
         return self.records.robot
 
+    @property
+    def units(self) -> Units:
+        """The units of what comes out."""
+        return self.records.units
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """What a file says of the answers beside its columns."""
+        return envelope("robot", self.robot.id, self.records.units)
+
     def from_number(self, first: int, carried: Carried) -> SolutionReport:
         """The same for the targets behind the first ones."""
         return replace(self, carried=carried, count=first, unreached=0, begun=first > 0, cores=1)
+
+    def alone_from(self, first: int, carried: Carried) -> SolutionReport:
+        """The same, with what stands above all answers."""
+        return replace(self.from_number(first, carried), begun=False)
+
+    def bare(self) -> SolutionReport:
+        """The same without what is carried."""
+        return replace(self, carried=nothing())
 
     @property
     def found(self) -> int:

@@ -11,6 +11,7 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.model import Tree
 from robokin.number_text import show
+from robokin.records.envelope import envelope
 from robokin.records.pose_blocks import PoseMaker
 from robokin.records.pose_records import PoseBlock, tip_records
 from robokin.reports.answer_stream import AnswerStream
@@ -50,6 +51,11 @@ class TipReport(AnswerStream):
     def units(self) -> Units:
         """The units of what goes in and out."""
         return self.maker.units
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """What a file says of the answers beside its columns."""
+        return envelope("robot", self.tree.id, self.units)
 
     def documents(self, blocks: Iterable[Array]) -> Iterator[Iterable[dict[str, Any]]]:
         """The documents of each block."""

@@ -39,6 +39,8 @@ class Carried:
         self.names: tuple[str, ...] = ()
         self.typed = False
         """Whether the cells are values of JSON; else they are text."""
+        self.kinds: tuple[str, ...] = ()
+        """Of columns that have a type of their own what they hold: number, whole, truth or text."""
         self.rows: deque[Sequence[Any]] = deque()
 
     def choose(self, headings: Sequence[str], used: Collection[int]) -> list[int]:
@@ -76,16 +78,28 @@ class Carried:
         """The cells of some rows."""
         self.rows.extend(rows)
 
-    def taken_out(self) -> Carried:
-        """The rows that are here, by themselves: those of a block, for a worker."""
+    def taken_out(self, count: int | None = None) -> Carried:
+        """The rows that are here, or the first `count` of them, by themselves: those of a block, for a worker."""
         own = Carried((), self.say, wanted=self.wanted)
-        own.names, own.typed, own.rows = self.names, self.typed, self.rows
-        self.rows = deque()
+        own.names, own.typed, own.kinds = self.names, self.typed, self.kinds
+        if count is None or count >= len(self.rows):
+            own.rows, self.rows = self.rows, deque()
+        else:
+            own.rows = deque(self.rows.popleft() for _ in range(count))
         return own
 
     def cells(self) -> list[str]:
         """The next row's cells, as text."""
-        return [value if isinstance(value, str) else _text(value) for value in self._next()]
+        return [cell_text(value) for value in self._next()]
+
+    def columns(self, count: int) -> list[list[Any]]:
+        """The next rows' cells by their columns: values of the columns that have a type, else text."""
+        rows = [self._next() for _ in range(count)] if self.names else []
+        kinds = self.kinds or ("text",) * len(self.names)
+        return [
+            [value if kind != "text" else cell_text(value) for value in column]
+            for kind, column in zip(kinds, zip(*rows, strict=True), strict=True)
+        ]
 
     def in_front_of(self, record: dict[str, Any]) -> dict[str, Any]:
         """A JSON document behind the next row's cells; those of a CSV are numbers where they are plain decimal ones."""
@@ -117,7 +131,11 @@ def given_back(names: Collection[str]) -> str:
 
 def nothing() -> Carried:
     """Nothing goes through."""
-    return Carried((), lambda sentence: None, wanted=False)
+    return Carried((), _unsaid, wanted=False)
+
+
+def _unsaid(sentence: str) -> None:
+    """Say nothing."""
 
 
 def _line(cells: Sequence[str]) -> bytes:
@@ -128,7 +146,10 @@ def _line(cells: Sequence[str]) -> bytes:
     return line.encode(errors="backslashreplace") + b","
 
 
-def _text(value: Any) -> str:
+def cell_text(value: Any) -> str:
+    """A value of JSON as a cell: text as it is, nothing as nothing."""
+    if isinstance(value, str):
+        return value
     return "" if value is None else json.dumps(value, ensure_ascii=False)
 
 

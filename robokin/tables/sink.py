@@ -12,6 +12,7 @@ from typing import IO
 
 from robokin.errors import InputError, OutputError, or_list
 from robokin.files import CLOSED, descriptor_of
+from robokin.tables.arrow_library import ENDINGS as ARROW_ENDINGS
 from robokin.unfinished_work import unfinished
 
 ENDINGS = {".csv": "csv", ".jsonl": "jsonl", ".json": "json", ".npy": "npy"}
@@ -27,20 +28,34 @@ class Writing:
 CLOSED_OUTPUT = "standard output is closed, expected a place that can be written"
 
 
-def format_of(output: str | None, chosen: str | None, *, arrays: bool = False) -> str:
+def format_of(output: str | None, chosen: str | None, *, arrays: bool = False, rows: bool = False) -> str:
     """The format to write: the output's ending, else the chosen one, else a table.
 
-    `arrays` tells whether what is written can be an array, so that `.npy` is possible.
+    `arrays` tells whether what is written can be an array, so that `.npy` is possible, `rows` whether it can be a table
+    of rows, so that `.parquet`, `.arrow` and `.feather` are.
     """
     if output is None:
         return chosen or "table"
-    kind = ENDINGS.get(Path(output).suffix.lower())
-    if kind is None or (kind == "npy" and not arrays):
-        possible = [ending for ending in ENDINGS if arrays or ending != ".npy"]
-        raise InputError(f"--output: found '{output}', expected a name that ends with {or_list(possible)}")
+    possible = {ending: kind for ending, kind in ENDINGS.items() if arrays or kind != "npy"}
+    possible |= ARROW_ENDINGS if rows else {}
+    kind = possible.get(Path(output).suffix.lower())
+    if kind is None:
+        folder = ", or with / for a folder of parts" if rows else ""
+        raise InputError(f"--output: found '{output}', expected a name that ends with {or_list(possible)}{folder}")
     if chosen is not None and chosen != kind:
         raise InputError(f"--output {output} and --format {chosen} say different things, expected one of them")
     return kind
+
+
+def is_folder(output: str | None) -> bool:
+    """Whether an output is a folder of parts: by the / at its end, or because such a folder is there."""
+    if output is None:
+        return False
+    if output.endswith(("/", os.sep)):
+        return True
+    from robokin.tables.part_folders import MANIFEST
+
+    return os.path.isfile(os.path.join(output, MANIFEST))  # noqa: PTH113, PTH118 - pathlib refuses what is no path
 
 
 @contextlib.contextmanager

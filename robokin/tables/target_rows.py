@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,10 +21,13 @@ from robokin.tables.json_rows import Passing, stated_units
 from robokin.tables.near_targets import BadRowError, near_enough
 from robokin.tables.orientations import ORIENTATIONS
 from robokin.tables.pose_columns import PLACES, PLANE, WAYS, PoseColumns, poses_from_rows
-from robokin.tables.rows import kind_of_stream
+from robokin.tables.rows import kind_of_stream, places_of
 from robokin.tables.text_source import ROWS, Say
 from robokin.tables.wanted_columns import factors
 from robokin.units import Units
+
+if TYPE_CHECKING:
+    from robokin.tables.arrow_rows import ArrowReader
 
 SHAPES = "expected numbers (m, 4, 4), (m, 16), (m, 6): x, y, z, roll, pitch, yaw, or (m, 3): x, y, z"
 IN_PLANE = ", or (m, 2): x, y"
@@ -48,20 +51,33 @@ class Targets:
 
     def blocks(self) -> Iterator[Array]:
         """Blocks of poses (m, 4, 4) [m]. Raises InputError with the number of the line that is wrong."""
-        with open_input(self.source, ROWS) as (stream, name):
-            yield from self.blocks_in(stream, name)
+        for place in places_of(self.source):
+            with open_input(place, ROWS) as (stream, name):
+                yield from self.blocks_in(stream, name)
 
     def blocks_in(self, stream: Any, name: str) -> Iterator[Array]:
         """The same from a stream with this name."""
         try:
             kind, buffered = kind_of_stream(stream, name)
-            yield from {"npy": self._arrays, "json": self._json, "csv": self._csv}[kind](buffered, name)
+            if kind in ("parquet", "arrow"):
+                yield from self._arrow(kind, buffered, name)
+            else:
+                yield from {"npy": self._arrays, "json": self._json, "csv": self._csv}[kind](buffered, name)
         except OSError as error:
             raise InputError(f"{name}: {error.strerror}, expected rows that can be read") from None
 
     def _csv(self, stream: Any, name: str) -> Iterator[Array]:
         wanted = PoseColumns(self.units, self.kind, self.plane)
-        reader = CsvReader(stream, name, wanted, self.carried, self.say)
+        yield from self._rows_of(CsvReader(stream, name, wanted, self.carried, self.say))
+
+    def _arrow(self, kind: str, stream: Any, name: str) -> Iterator[Array]:
+        from robokin.tables.arrow_rows import ArrowReader
+
+        wanted = PoseColumns(self.units, self.kind, self.plane)
+        yield from self._rows_of(ArrowReader(stream, name, kind, wanted, self.carried, self.say))
+
+    def _rows_of(self, reader: CsvReader | ArrowReader) -> Iterator[Array]:
+        """The poses of rows below names."""
         for rows in reader.rows():
             assert reader.found is not None
             kind = reader.found.way.kind

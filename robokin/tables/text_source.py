@@ -23,7 +23,7 @@ BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 """What a text in UTF-16 begins with."""
 
-ROWS = "a file of rows (.csv, .jsonl or .npy)"
+ROWS = "a file of rows (.csv, .jsonl, .npy or .parquet)"
 """What is expected where a file of many configurations or poses is named."""
 
 Say = Callable[[str], None]

@@ -12,7 +12,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import InputError
-from robokin.jobs.sequences import Kind, grid_sides, unit_points
+from robokin.jobs.sequences import RANDOM_BLOCK, Kind, grid_sides, unit_points
 from robokin.kernel.chain import Chain, with_joints_at
 from robokin.kernel.columns import cos_sin_of_halves
 from robokin.kernel.entries import Entry, increased, plus, turned, turned_back
@@ -22,6 +22,9 @@ from robokin.workspace.space import Space
 
 BLOCK = 4096
 """Configurations followed at once: their columns (32 kB each) stay in the second-level cache."""
+
+TASK = RANDOM_BLOCK
+"""Configurations of a task for one core: some ten milliseconds of work, and no random number drawn twice."""
 
 
 ATTEMPTS = 64

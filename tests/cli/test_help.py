@@ -100,7 +100,7 @@ def test_a_shell_completes_commands_and_robots():
 
 
 def test_a_shell_completes_what_options_take(tmp_path):
-    assert completed("robokin fk puma560 -f ") == ["table", "json", "jsonl", "csv"]
+    assert completed("robokin fk puma560 -f ") == ["table", "json", "jsonl", "csv", "parquet", "arrow"]
     assert completed("robokin fk puma560 --length c") == ["cm"]
     assert completed("robokin ik puma560 --method a") == ["auto", "analytic"]
     assert completed("robokin fk puma560 --q h") == ["home"]

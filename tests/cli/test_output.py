@@ -113,7 +113,7 @@ def test_a_folder_that_may_not_be_written(call, tmp_path):
 
 @pytest.mark.parametrize("name", ["out", "out.txt", "out.xlsx", "-", "csv"])
 def test_an_ending_that_says_nothing(call, name):
-    refused(call("fk", "puma560", *Q, "-o", name), f"found '{name}'", "expected", ".csv, .jsonl, .json or .npy")
+    refused(call("fk", "puma560", *Q, "-o", name), f"found '{name}'", "expected", ".csv, .jsonl, .json, .npy, .parquet")
 
 
 def test_ending_and_format_may_agree_but_not_differ(call, tmp_path):

@@ -438,7 +438,7 @@ def test_two_runs_do_not_write_the_same_file(puma, tmp_path):
 
 @pytest.mark.parametrize("name", ["cloud", "cloud.txt", "cloud.json", "csv"])
 def test_an_unknown_ending_is_refused(name):
-    with pytest.raises(InputError, match=r"expected a name that ends with \.csv, \.jsonl, \.npy or \.ply"):
+    with pytest.raises(InputError, match=r"expected a name that ends with \.csv, \.jsonl, \.npy, \.ply, \.parquet"):
         sample_format(name)
     assert sample_format("a/b.PLY") == "ply"
 

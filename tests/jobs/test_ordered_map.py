@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import numpy as np
@@ -40,10 +41,11 @@ def end_at_five(x):
 
 
 class StubbornError(Exception):
-    """An error that does not come back from a pickle."""
+    """An error that does not pickle, whatever other libraries teach pickle of errors."""
 
     def __init__(self, a, b):
         super().__init__(f"{a} and {b}")
+        self.lock = threading.Lock()
 
 
 def fail_stubbornly(x):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from robokin.cli.check_options import AnswerFileOptions, MarkOptions, ToleranceOptions
+from robokin.cli.cluster_options import working_on
 from robokin.cli.completion import named_poses
 from robokin.cli.options import RobotArgument, option
 from robokin.errors import InputError
@@ -62,4 +63,5 @@ def command(
     items = marked(check, tasks, way.rules)
     if sheet.input is not None and sheet.key is None:
         items = without_repetitions(items)
-    return way.finish("fk", robot, check, items)
+    with working_on(sheet.cluster):
+        return way.finish("fk", robot, check, items)

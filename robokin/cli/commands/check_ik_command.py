@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from robokin.cli.check_options import AnswerFileOptions, MarkOptions, ToleranceOptions
+from robokin.cli.cluster_options import working_on
 from robokin.cli.completion import named_poses
 from robokin.cli.options import RobotArgument, option
 from robokin.cli.target_options import TargetOptions
@@ -69,4 +70,5 @@ def command(
         note_answered_units(q, check.robot, check.units)
         answers = tuple(typed_joints(text, check.robot, check.units) for text in q)
         tasks = [AnswerTask("1", GivenValue(AnsweredPose(question.T, question.task)), answers)]
-    return way.finish("ik", robot, check, marked(check, check.prepared(tasks), way.rules))
+    with working_on(sheet.cluster):
+        return way.finish("ik", robot, check, marked(check, check.prepared(tasks), way.rules))

@@ -6,10 +6,11 @@ from typing import Annotated
 
 import typer
 
+from robokin.cli.cluster_options import POSE_ROWS, PartOptions
 from robokin.cli.completion import named_poses
 from robokin.cli.cores import MANY, CoresOption, cores_worth, whole_cores
-from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
-from robokin.cli.options import AsOption, DropOption, RobotArgument, option, orientation_kind
+from robokin.cli.option_groups import DescriptionOptions, RowOutputOptions
+from robokin.cli.options import TABLES, AsOption, DropOption, RobotArgument, option, orientation_kind
 from robokin.cli.statuses import say
 from robokin.errors import InputError
 
@@ -32,7 +33,8 @@ def command(
         option(
             "--input -i",
             "FILE",
-            "A configuration a line: .csv (with a header or without), .jsonl, .json or .npy; - for standard input.",
+            "A configuration a line: .csv (with a header or without), .jsonl, .json, .npy or .parquet; "
+            "- for standard input.",
         ),
     ] = None,
     frames: Annotated[bool, typer.Option("--frames", help="Also the frame after each row of the table.")] = False,
@@ -43,7 +45,8 @@ def command(
     as_: AsOption = None,
     drop: DropOption = False,
     cores: CoresOption = None,
-    output: ArrayOutputOptions,
+    scale: PartOptions,
+    output: RowOutputOptions,
     description: DescriptionOptions,
 ) -> int:
     """Forward kinematics: the pose of the end effector, or of a tree's tips, at given joint values.
@@ -81,7 +84,7 @@ def command(
         with sink(output.file) as stream:
             stream.write(symbolic_written(form, model, units, symbols))
         return 0
-    kind = output.kind
+    kind, long = output.kind, scale.is_long(output, cores, input)
     orientation, most = orientation_kind(as_), whole_cores(cores)
     subject, units = description.robot_or_tree(robot)
     tree: Tree | None = None
@@ -91,15 +94,17 @@ def command(
     else:
         columns = csv_columns(subject, orientation)
     carried = Carried(
-        columns if kind == "csv" else keys,
+        columns if kind in TABLES else keys,
         say,
-        wanted=not drop and kind in ("csv", "json", "jsonl"),
+        wanted=not drop and kind not in ("table", "npy"),
     )
     blocks, streamed, alone = configurations(subject, units, q, input, carried, still=True)
     if frames and tree:
         raise InputError(f"--frames: {subject.name} is a tree, expected --tip with one of {tree.listed_tips()}")
-    if frames and kind == "csv":
-        raise InputError("--frames: a row of CSV has no room for frames, expected the format table, json, jsonl or npy")
+    if frames and kind in TABLES:
+        name = "CSV" if kind == "csv" else f"an output in {kind}"
+        expected = "expected the format table, json, jsonl or npy"
+        raise InputError(f"--frames: a row of {name} has no room for frames, {expected}")
     maker = PoseMaker(subject, units, frames)
     if not streamed:
         for note in (note for given in blocks for note in maker.outside_notes(given)):
@@ -114,10 +119,18 @@ def command(
                 stream.write(pose.written(kind))
             return 0
     used = cores_worth(most, "-" if input is None else input, MANY) if streamed else 1
+    if tree and long:
+        raise InputError(f"{subject.name} is a tree, expected --tip with one of {tree.listed_tips()}")
     if tree:
         TipReport(tree, maker, orientation, alone, carried).send(output.file, kind, blocks)
     else:
-        PoseReport(maker, orientation, alone, carried, cores=used).send(output.file, kind, blocks)
+        report = PoseReport(maker, orientation, alone, carried, cores=most if long else used)
+        if long:
+            from robokin.cli.part_answers import send_answers
+
+            send_answers(report, blocks, output, kind, scale, {"command": "fk", "as": orientation}, POSE_ROWS)
+        else:
+            report.send(output.file, kind, blocks)
     if streamed and (summary := maker.outside_summary()):
         say(summary)
     return 0

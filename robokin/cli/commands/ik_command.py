@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from robokin.cli.cluster_options import SOLUTION_ROWS, PartOptions
 from robokin.cli.completion import named_poses, tip_targets, words
 from robokin.cli.cores import SOME, CoresOption, cores_worth, whole_cores
-from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
-from robokin.cli.options import DropOption, RobotArgument, choose, option, orientation_kind, whole_number
+from robokin.cli.option_groups import DescriptionOptions, RowOutputOptions
+from robokin.cli.options import TABLES, DropOption, RobotArgument, choose, option, orientation_kind, whole_number
 from robokin.cli.statuses import DONE, NO, say
 from robokin.cli.target_options import TargetOptions
 from robokin.errors import InputError, counted
@@ -45,7 +46,7 @@ def command(
             "--input -i",
             "FILE",
             "A pose a line: x, y, z, roll, pitch, yaw or what else `robokin fk` writes (.csv, .jsonl, .json, "
-            ".npy), or x, y, z alone, or x, y, phi of a planar arm; - for standard input.",
+            ".npy, .parquet), or x, y, z alone, or x, y, phi of a planar arm; - for standard input.",
         ),
     ] = None,
     near: Annotated[
@@ -91,7 +92,8 @@ def command(
     ] = None,
     drop: DropOption = False,
     cores: CoresOption = None,
-    output: ArrayOutputOptions,
+    scale: PartOptions,
+    output: RowOutputOptions,
     description: DescriptionOptions,
 ) -> int:
     """Inverse kinematics: every joint configuration that reaches a pose.
@@ -141,12 +143,14 @@ def command(
                 **target.texts, "--input": input, "--tip": description.tip, "--root": description.root,
                 "--method": method, "--turns": turns, "--hold": hold or None, "--tol-position": tol_position,
                 "--tol-angle": tol_angle, "--explain": explain, "--as": as_, "--drop": drop, "--cores": cores,
+                "--cluster": scale.cluster, "--resume": scale.resume, "--part-rows": scale.part_rows,
             }
         )  # fmt: skip
         asked_for = {"limits": not no_limits, "most": _count(max_, "--max", 1), "seed": _count(seed, "--seed", 0) or 0}
         return answer_tips(robot, tips, near=near, output=output, description=description, arguments=asked_for)
     kind = output.kind
-    used = cores_worth(whole_cores(cores), input, SOME)
+    long = scale.is_long(output, cores, input)
+    used = whole_cores(cores) if long else cores_worth(whole_cores(cores), input, SOME)
     model, units = description.moving_robot(robot)
     target.exclude("--input", input)
     if input is None and (as_ is not None or drop):
@@ -173,8 +177,8 @@ def command(
         _tolerance(tol_position, "--tol-position", units, angle=False),
         _tolerance(tol_angle, "--tol-angle", units, angle=True),
     )
-    taken = csv_columns(model) if kind == "csv" else RECORD_KEYS
-    carried = Carried(taken, say, wanted=not drop and kind in ("csv", "json", "jsonl"))
+    taken = csv_columns(model) if kind in TABLES else RECORD_KEYS
+    carried = Carried(taken, say, wanted=not drop and kind not in ("table", "npy"))
     if input is None:
         asked = parse_target(target.texts, model, units)
         for note in asked.notes:
@@ -196,7 +200,14 @@ def command(
 
     records = SolutionRecords(model, units, arguments["task"], held)
     answers = SolutionReport(records, tolerances, arguments, input is None, explain, carried, cores=used)
-    answers.send(output.file, kind, blocks)
+    if long:
+        from robokin.cli.part_answers import send_answers
+
+        given = {name: value.tolist() if name == "near" else value for name, value in arguments.items()}
+        question = {"command": "ik"} | given | {"tolerances": tolerances}
+        send_answers(answers, blocks, output, kind, scale, question, SOLUTION_ROWS)
+    else:
+        answers.send(output.file, kind, blocks)
     if not answers.alone and answers.unreached:
         verb = "has" if answers.unreached == 1 else "have"
         say(f"{answers.unreached} of {counted(answers.count, 'target')} {verb} no solution")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from robokin.cli.completion import named_poses, words
-from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
+from robokin.cli.option_groups import DescriptionOptions, RowOutputOptions
 from robokin.cli.options import DropOption, RobotArgument, choose, option
 from robokin.cli.statuses import say
 from robokin.errors import InputError, shown
@@ -43,7 +43,8 @@ def command(
         option(
             "--input -i",
             "FILE",
-            "A configuration a line: .csv (with a header or without), .jsonl, .json or .npy; - for standard input.",
+            "A configuration a line: .csv (with a header or without), .jsonl, .json, .npy or .parquet; "
+            "- for standard input.",
         ),
     ] = None,
     frame: Annotated[
@@ -59,7 +60,7 @@ def command(
         ),
     ] = None,
     drop: DropOption = False,
-    output: ArrayOutputOptions,
+    output: RowOutputOptions,
     description: DescriptionOptions,
 ) -> int:
     """The geometric Jacobian: twist of the tool = J times joint rates, linear part before angular part.
@@ -87,7 +88,7 @@ def command(
     axes: Any = choose(frame, FRAMES, "--frame") or "base"
     counted: Any = choose(task, TASKS, "--task")
     model, units = description.robot(robot)
-    carried = Carried(taken_by(kind, model.n), say, wanted=not drop and kind in ("csv", "json", "jsonl"))
+    carried = Carried(taken_by(kind, model.n), say, wanted=not drop and kind not in ("table", "npy"))
     blocks, _, alone = configurations(model, units, q, input, carried)
     records = JacobianRecords(model, units, axes, counted, _wrench(force))
     if records.force and kind == "npy":

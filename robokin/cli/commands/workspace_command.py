@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from robokin.cli.cluster_options import MOST_ROWS, SAMPLE_ROWS, ClusterOption, PartRowsOption, working_on
 from robokin.cli.completion import robots, words
 from robokin.cli.cores import CoresOption, whole_cores
 from robokin.cli.option_groups import DescriptionOptions
@@ -62,16 +63,19 @@ def command(
     compare: Annotated[str | None, option("--compare", "ROBOT", "Another robot beside it.", robots)] = None,
     plot: Annotated[str | None, option("--plot -p", "FILE", "Draw to .png, .svg, .pdf, or .html that turns.")] = None,
     output: Annotated[
-        str | None, option("--output -o", "FILE", "Write the samples, to .csv, .jsonl, .npy or .ply.")
+        str | None,
+        option("--output -o", "FILE", "Write the samples, to .csv, .jsonl, .npy, .ply or .parquet, or to a FOLDER/."),
     ] = None,
     with_: Annotated[
         str | None, option("--with", "WHAT", "What --output has beside positions: joints, poses or both.", words(*HELD))
     ] = None,
     as_: AsOption = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with a file of --output that was interrupted.")
+        bool, typer.Option("--resume", help="Go on with a file or a folder of --output that was interrupted.")
     ] = False,
     cores: CoresOption = None,
+    cluster: ClusterOption = None,
+    part_rows: PartRowsOption = None,
     format: FormatOption = None,
     json: JsonOption = False,
     description: DescriptionOptions,
@@ -105,11 +109,13 @@ def command(
         "sampling": choose(sampling, SAMPLINGS, "--sampling") or "sobol",
         "cores": whole_cores(cores),
     }
+    if cluster is not None and cores is not None:
+        raise InputError("--cluster and --cores exclude each other, expected one of them")
     _one_question({"--at": at, "--compare": compare, "--output": output}, {"--dextrous": dextrous, "--section": section,
                   "--slice": slice_, "--plot": plot, "--voxel": voxel})  # fmt: skip
     if voxel is not None and not dextrous:
         raise InputError("--voxel: is the side of the cells of the map, expected --dextrous with it")
-    for name, value in (("--with", with_), ("--as", as_), ("--resume", resume)):
+    for name, value in (("--with", with_), ("--as", as_), ("--resume", resume), ("--part-rows", part_rows)):
         if value and output is None:
             raise InputError(f"{name}: says what is written to a file, expected --output FILE with it")
     if plot is not None:
@@ -124,7 +130,8 @@ def command(
     if output is not None:
         if format is not None or json:
             raise InputError("--output writes samples by the file's ending, expected no --format and no --json")
-        return _write(model, units, output, with_, as_, resume, arguments)
+        with working_on(cluster):
+            return _write(model, units, output, (with_, as_), (resume, part_rows), arguments)
     if dextrous:
         arguments["dextrous"] = True
     if voxel is not None:
@@ -133,7 +140,8 @@ def command(
             raise InputError(f"--voxel: found {voxel}, expected a length greater than 0")
         arguments["voxel"] = float(side) * units.metres
     robots = [model] if compare is None else [model, load_robot(compare, {})]
-    return _analyse(robots, units, kind, (section, slice_ or []), plot, arguments)
+    with working_on(cluster):
+        return _analyse(robots, units, kind, (section, slice_ or []), plot, arguments)
 
 
 def _analyse(
@@ -211,15 +219,26 @@ def _places(robot: Robot, units: Units, kind: str, at: list[str], arguments: dic
 
 
 def _write(
-    robot: Robot, units: Units, output: str, with_: str | None, as_: str | None, resume: bool, arguments: dict[str, Any]
-) -> int:
-    """Write samples to a file."""
+    robot: Robot, units: Units, output: str, content: tuple[str | None, str | None], way: tuple[bool, str | None],
+    arguments: dict[str, Any],
+) -> int:  # fmt: skip
+    """Write samples to a file or a folder; `content` is --with and --as, `way` is --resume and --part-rows."""
     from robokin.cli.options import orientation_kind
     from robokin.cli.progress import Progress
+    from robokin.reports.part_runs import PartRun, sample_parts
     from robokin.reports.sample_files import write_samples
     from robokin.reports.sample_rows import Samples, sample_format
+    from robokin.reports.sample_tables import write_sample_table
+    from robokin.tables.arrow_library import KINDS
+    from robokin.tables.sink import is_folder
     from robokin.workspace.space import space_of
 
+    with_, as_ = content
+    resume, part_rows = way
+    folder, cores = is_folder(output), arguments["cores"]
+    if part_rows is not None and not folder:
+        raise InputError("--part-rows: is about a folder of parts, expected --output FOLDER/ with it")
+    rows = whole_number(part_rows, "--part-rows", 1, MOST_ROWS, grouped=True) or SAMPLE_ROWS
     held = [part.strip() for part in with_.split(",")] if with_ is not None else []
     for part in held:
         choose(part, HELD, "--with")
@@ -227,11 +246,17 @@ def _write(
     if as_ is not None and "poses" not in held:
         raise InputError("--as: says how poses are written, expected --with poses")
     samples = Samples(
-        space_of(robot), units, sample_format(output), arguments["sampling"], arguments["seed"],
-        arguments["samples"], "joints" in held, turned if "poses" in held else None,
+        space_of(robot), units, "parquet" if folder else sample_format(output), arguments["sampling"],
+        arguments["seed"], arguments["samples"], "joints" in held, turned if "poses" in held else None,
     )  # fmt: skip
     with Progress("samples") as progress:
-        before = write_samples(output, samples, arguments["cores"], resume, progress.told, say)
+        before = 0
+        if folder:
+            before = sample_parts(PartRun(output, resume, cores, progress.told), samples, rows)
+        elif samples.kind in KINDS:
+            write_sample_table(output, samples, cores, resume, progress.told)
+        else:
+            before = write_samples(output, samples, cores, resume, progress.told, say)
     if before:
         say(f"{before:,} of {samples.count:,} samples were there before")
     return DONE

@@ -11,10 +11,11 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.errors import ExpressionError, InputError, did_you_mean, shown
 from robokin.files import open_input
-from robokin.grading.answers.answer_records import SheetReader
+from robokin.grading.answers.answer_records import LARGEST, SheetReader
 from robokin.grading.answers.submissions import OPEN_PLACES, open_plain_file
 from robokin.grading.mark_items import BAD_LINE, BLANK, NOT_A_NUMBER
 from robokin.grading.marking import NoAnswerError
+from robokin.tables.arrow_text import as_csv
 from robokin.tables.number_cells import PLAIN, Decimals, decimals_of, number_in
 from robokin.tables.text_source import Say
 from robokin.units import Units
@@ -159,7 +160,7 @@ class AnswerFile:
 def read_key(source: str, say: Say) -> AnswerFile:
     """The questions: the teacher's own file, whatever kind of file it is. Raises InputError."""
     with open_input(source, "a CSV of questions") as (stream, name):
-        return _sheet(SheetReader(stream, name, say))
+        return _sheet(SheetReader(as_csv(stream, name, LARGEST), name, say))
 
 
 def read_answers(source: str, say: Say, *, follow: bool) -> AnswerFile:
@@ -172,7 +173,7 @@ def read_answers(source: str, say: Say, *, follow: bool) -> AnswerFile:
         with open_input(source, "a CSV of answers") as (stream, name):
             return _sheet(SheetReader(stream, name, say))
     with open_plain_file(source, follow) as stream:
-        return _sheet(SheetReader(stream, source, say))
+        return _sheet(SheetReader(as_csv(stream, source, LARGEST), source, say))
 
 
 def _sheet(reader: SheetReader) -> AnswerFile:

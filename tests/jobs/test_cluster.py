@@ -1,0 +1,126 @@
+"""A Dask cluster of processes here: the same results, whatever happens to its workers."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from robokin.errors import InputError, RobokinError
+from robokin.jobs import cluster as clusters
+from robokin.jobs.cluster import cluster
+from robokin.jobs.ordered_map import WorkerError, finished_map, ordered_map
+
+
+def square(x):
+    time.sleep(0.01)
+    return x * x, os.getpid()
+
+
+def fail_at_five(x):
+    if x == 5:
+        raise InputError("found five, expected another")
+    return x
+
+
+def end_at_five(x):
+    if x == 5:
+        os._exit(9)
+    return x
+
+
+def end_once(task):
+    """The first who gets the task is lost with it."""
+    x, mark = task
+    if x == 5 and not Path(mark).exists():
+        Path(mark).touch()
+        os._exit(9)
+    return x
+
+
+@pytest.fixture(scope="module")
+def two():
+    with cluster("local:2") as workers:
+        assert workers == 2
+        yield
+
+
+def test_results_come_in_order_from_other_processes(two):
+    found = [*ordered_map(square, range(30))]
+    assert [value for value, _ in found] == [x * x for x in range(30)]
+    assert len({process for _, process in found} - {os.getpid()}) == 2
+    assert sorted(value for value, _ in finished_map(square, range(30))) == [x * x for x in range(30)]
+
+
+def test_an_error_comes_back_as_it_is(two):
+    with pytest.raises(InputError, match="found five, expected another"):
+        [*ordered_map(fail_at_five, range(30))]
+
+
+def test_a_lost_worker_costs_its_task_and_nothing_else(two, tmp_path):
+    tasks = [(x, str(tmp_path / "mark")) for x in range(20)]
+    assert [*ordered_map(end_once, tasks)] == [*range(20)]
+    assert (tmp_path / "mark").exists()
+
+
+def test_a_task_that_ends_every_worker_is_given_up(two):
+    with pytest.raises(WorkerError, match="several workers came to an end with the same part, expected"):
+        [*ordered_map(end_at_five, range(8))]
+    assert [*ordered_map(fail_at_five, range(4))] == [*range(4)]
+
+
+def test_a_worker_of_another_version_is_refused(two, monkeypatch):
+    known = clusters.versions()
+    monkeypatch.setattr(clusters, "versions", lambda: (("robokin", "9.9"), *known[1:]))
+    with cluster("local:1"), pytest.raises(WorkerError, match=r"has robokin 0\.1\.0, expected 9\.9 as here"):
+        [*ordered_map(square, range(3))]
+
+
+def test_the_address_may_be_that_of_a_scheduler_or_its_file(tmp_path):
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=1, threads_per_worker=2, processes=False, dashboard_address="127.0.0.1:0") as own:
+        with cluster(own.scheduler_address) as workers:
+            assert workers == 2
+            assert [value for value, _ in ordered_map(square, range(9))] == [x * x for x in range(9)]
+        file = tmp_path / "scheduler.json"
+        file.write_text(json.dumps({"type": "Scheduler", "address": own.scheduler_address}))
+        with cluster(str(file)):
+            assert [value for value, _ in ordered_map(square, range(9))] == [x * x for x in range(9)]
+
+
+@pytest.mark.parametrize(
+    "address, said",
+    [
+        ("", "found no address"),
+        ("local:0", r"local:N with N from 1 to 1024"),
+        ("local:two", r"local:N with N from 1 to 1024"),
+        ("local:99999999999", r"local:N with N from 1 to 1024"),
+        ("nonsense", "found the cluster 'nonsense'"),
+        ("tcp://127.0.0.1:1", "no scheduler answers at tcp://127.0.0.1:1"),
+        ("nowhere.json", "nowhere.json: no such file"),
+    ],
+)
+def test_what_is_no_address_is_said(address, said, monkeypatch):
+    monkeypatch.setattr(clusters, "CONNECTING", 0.3)
+    monkeypatch.setitem(clusters.SETTINGS, "distributed.comm.timeouts.connect", "0.3s")
+    with pytest.raises(RobokinError, match=said) as error, cluster(address):
+        pass
+    assert "expected" in str(error.value)
+
+
+def test_without_dask_a_sentence_says_what_to_install():
+    code = (
+        "import sys\n"
+        "sys.modules['distributed'] = None\n"
+        "from robokin.cli import run\n"
+        "sys.exit(run(['workspace', 'planar2r', '--cluster', 'local:2']))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "expected Dask: pip install 'robokin[cluster]'" in done.stderr
