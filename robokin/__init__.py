@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from robokin.inverse.joint_paths import follow_line as follow_line
     from robokin.inverse.joint_paths import interpolate_joints as interpolate_joints
     from robokin.inverse.solve import solve_ik as solve_ik
+    from robokin.inverse.swivel_angles import swivel_angle as swivel_angle
+    from robokin.inverse.swivel_angles import swivel_solutions as swivel_solutions
     from robokin.inverse.tip_targets import solve_tips as solve_tips
     from robokin.inverse.trajectories import trajectory as trajectory
     from robokin.kernel.native_kernel import kernel_in_use as kernel_in_use
@@ -84,6 +86,8 @@ _HOMES = {
     "kernel_in_use": "robokin.kernel.native_kernel",
     "solve_ik": "robokin.inverse.solve",
     "solve_tips": "robokin.inverse.tip_targets",
+    "swivel_angle": "robokin.inverse.swivel_angles",
+    "swivel_solutions": "robokin.inverse.swivel_angles",
     "jacobian": "robokin.kinematics.jacobian",
     "tip_poses": "robokin.kinematics.tips",
     "differential_kinematics": "robokin.kinematics.velocity",

@@ -24,7 +24,9 @@ GROUPS = {
         "forward_kinematics", "tip_poses", "link_frames", "jacobian", "differential_kinematics",
         "singular_configurations", "symbols",
     ),
-    "Inverse kinematics and paths": ("solve_ik", "solve_tips", "interpolate_joints", "follow_line", "trajectory"),
+    "Inverse kinematics and paths": (
+        "solve_ik", "swivel_angle", "swivel_solutions", "solve_tips", "interpolate_joints", "follow_line", "trajectory",
+    ),
     "Workspace and mobility": ("analyse_workspace", "mobility_of", "manoeuvrability_of"),
     "Marks": (
         "check_pose", "check_configuration", "check_solutions", "check_table", "Tolerance", "default_tolerance",

@@ -32,6 +32,8 @@ CAR = robokin.load_wheeled("car")
 Q = np.radians([10.0, -50.0, 100.0, 20.0, 30.0, 40.0])
 T = robokin.forward_kinematics(PUMA, Q)
 PLANAR_T = robokin.forward_kinematics(PLANAR, [0.3, 0.4])
+IIWA = robokin.load("iiwa14")
+IIWA_T = robokin.forward_kinematics(IIWA, np.ones(7))
 
 
 def test_a_result_is_a_sequence_of_its_solutions():
@@ -275,6 +277,8 @@ RIGHT = {
         "tree": HAND, "targets": {"index": robokin.tip_poses(HAND, HAND.poses["pinch"])[1]}, "task": "position",
         "limits": True, "near": np.zeros(21), "most": 2, "seed": 0,
     },
+    "swivel_angle": {"robot": IIWA, "q": np.zeros(7)},
+    "swivel_solutions": {"robot": IIWA, "T": IIWA_T, "swivel": 0.2, "limits": True},
     "follow_line": {"robot": PLANAR, "start": [0.3, 0.4], "T": PLANAR_T, "steps": 2, "limits": True, "task": None},
     "interpolate_joints": {"robot": PLANAR, "start": [0.3, 0.4], "end": [0.5, 0.6], "steps": 2, "limits": True},
     "trajectory": {

@@ -107,6 +107,7 @@ def _of_motion(wish: CoupledWish, T: Array, motion: Result) -> Result:
         motion, solutions=tuple(listed), complete=complete, basis=motion.basis if complete else None,
         certificate=words, counts=counts, families=tuple(families), postures=motion.postures and complete,
         all_known=motion.all_known and not endless and not cut_motions, reason=None, nearest=None, question=None,
+        families_complete=complete,
     )  # fmt: skip
     if listed:
         return told

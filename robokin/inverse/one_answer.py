@@ -77,7 +77,7 @@ class OneAnswer:
             tuple(solutions), complete, analysis.method, counts=counts, postures=complete,
             basis=BASES[COUNTED] if complete else None,
             certificate=counted_sentence(analysis.number, count, self.arm.form is not None), all_known=True,
-            question=question,
+            question=question, families_complete=True,
         )  # fmt: skip
 
     def _equivalents(self, row: int) -> int:

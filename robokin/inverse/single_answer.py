@@ -9,6 +9,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.claims import BASES
+from robokin.inverse.known_motions import known_families
 from robokin.inverse.self_motion.arcs import arcs_of_each
 from robokin.inverse.self_motion.curve_crossings import crossings
 from robokin.inverse.self_motion.redundant import NOT_FOUND, seeds_of
@@ -42,11 +43,15 @@ def result_of(request: Request, block: TargetBlock, i: int) -> Result:
     known = {joint for family in sets for joint in family.joints} | idle
     known_all = all(known.issuperset(solution.free) for solution in solutions)
     complete = complete and known_all and not (idle and solutions)
+    all_motions = bool(block.claims.basis[i]) and known_all and not (idle and solutions)
+    if request.motions and block.swivel is not None and block.swivel.known[i] and solutions:
+        all_motions = all(arc.swivel is not None for family in sets for arc in family.arcs)
     tried, same = block.claims.candidates, block.claims.duplicates
     found_of = {} if tried is None or same is None else {"found": int(tried[i]), "duplicates": int(same[i])}
     within = {"within_limits": int(block.within[i])} if request.limits else {}
     told: dict[str, Any] = {
         "families": sets,
+        "families_complete": all_motions,
         "counts": {**found_of, "closing": int(block.closing[i]), **within, "listed": len(solutions)},
         "postures": postures,
         "basis": BASES[block.claims.basis[i]] if complete else None,
@@ -100,6 +105,10 @@ def _redundant_families(request: Request, block: TargetBlock, i: int, q: Array) 
     analysis, limits = request.analysis, request.own_limits
     if not len(q):
         return ()
+    if block.swivel is not None and block.swivel.known[i]:
+        known = known_families(block.swivel, i, limits, q)
+        if known is not None:
+            return known
     T, size = block.T[i], analysis.size
     known = block.every[0][block.every[1] == i]
     seeds = np.concatenate([q, seeds_of(analysis, T, known, limits, request.middle)])

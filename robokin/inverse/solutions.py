@@ -66,11 +66,37 @@ class Arc(Brief):
 
     q: (k, n) [rad | m] configurations along it, each reaching the pose; the first and the last are its ends,
     where a joint meets its limit. `whole` is true where the self-motion is a closed curve that lies within the
-    limits everywhere, and the first and the last are then the same but for full turns.
+    limits everywhere, and the first and the last are then the same but for full turns. `swivel` is the interval of the
+    swivel angle [rad] that it covers, from the first to the last, of an arm that has one (`swivel_angle`).
     """
 
     q: Array
     whole: bool = False
+    swivel: tuple[float, float] | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields, for copies and pickles."""
+        return {part.name: getattr(self, part.name) for part in fields(self)}
+
+    if not TYPE_CHECKING:  # who reads the types knows the fields alone
+
+        def __getattr__(self, name: str) -> Any:
+            """The configurations, where they are not worked out yet."""
+            known = self.__dict__
+            find = known.get("_find")
+            if find is not None and name == "q":
+                known["q"] = find()
+                known.pop("_find", None)
+            if name in known:  # found here, or meanwhile by another thread
+                return known[name]
+            raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'", name=name, obj=self)
+
+
+def arc_later(find: Callable[[], Array], whole: bool, swivel: tuple[float, float]) -> Arc:
+    """An arc whose configurations are worked out when they are first asked for."""
+    one = object.__new__(Arc)
+    one.__dict__.update(whole=whole, swivel=swivel, _find=find)
+    return one
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -117,7 +143,9 @@ class Result(Answer):
     is then the closest configuration found. `counts` says how many were left after each filter: "closing" (distinct
     ones that reach the pose), "within_limits", "listed"; and how many the listed ones make with full turns of joints
     within the limits: "turns". `postures` is true where every solution is listed or differs from a listed one only in
-    joints that are free on their own, whatever the others do.
+    joints that are free on their own, whatever the others do. `families_complete` is true where every self-motion is
+    one of the `families`, but for those that are nowhere within the limits: where all solutions are known, and of arms
+    with a spherical shoulder and wrist.
     """
 
     solutions: tuple[Solution, ...]
@@ -132,6 +160,7 @@ class Result(Answer):
     all_known: bool = False
     families: tuple[Family, ...] = ()
     question: Question | None = None
+    families_complete: bool = False
 
     @property
     def reachable(self) -> bool:

@@ -12,6 +12,7 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis
 from robokin.inverse.claims import unclaimed
+from robokin.inverse.known_motions import known_motions, with_known
 from robokin.inverse.numeric.closest import TOGETHER, beyond_reach, nearest_configurations
 from robokin.inverse.numeric.closing import closing_nearest
 from robokin.inverse.numeric.least_squares import descend
@@ -22,6 +23,7 @@ from robokin.inverse.self_motion.members import listed_once
 from robokin.inverse.self_motion.onto_limits import onto_limits
 from robokin.inverse.self_motion.redundant import MOST_SOUGHT, UNPROVEN, supplemented
 from robokin.inverse.self_motion.spread import well_spread
+from robokin.inverse.self_motion.swivel_members import SwivelAnswers
 from robokin.inverse.solution_names import branch_names, listed_names
 from robokin.inverse.solutions import Arc
 from robokin.inverse.solve_blocks import solve_block, turned_in_the_open
@@ -71,6 +73,11 @@ class Request:
         return np.where(np.abs(self.robot.limits) > USELESS, none, self.robot.limits)
 
     @property
+    def wanted(self) -> int:
+        """How many solutions are looked for where there are infinitely many."""
+        return MOST if self.most is None or self.most > MOST_SOUGHT else self.most
+
+    @property
     def middle(self) -> Array:
         """(n,) where a joint is put that may be anywhere [rad | m]: at `near`, or at zero, or amid its limits."""
         low, high = self.robot.limits.T
@@ -90,11 +97,7 @@ class TargetBlock:
         self.request, self.T = request, T
         self._nearest: dict[int, tuple[Array, float, float]] = {}
         self._arcs: dict[int, list[tuple[Arc, ...]]] = {}
-        found, self.claims = nothing(robot.n), unclaimed(len(T))
-        if request.method != "numeric":
-            found, self.claims = solve_block(analysis, T, request.own_limits, request.near, request.middle)
-        if request.near is not None and analysis.redundancy and not analysis.open and request.method != "numeric":
-            found = _with_more(found, _beside(request, T, request.near), np.arange(len(T)))
+        found, since = self._solved()
         found, inside = _limited(request, found)
         if request.limits and not analysis.redundancy and not analysis.open:
             found, moved = onto_limits(analysis, T, found, inside, request.own_limits)
@@ -102,15 +105,18 @@ class TargetBlock:
                 found, inside = _limited(request, distinct(found, robot.revolute, analysis.size))
         later: Index | None = None
         if request.method != "numeric" and analysis.solver is not None and analysis.redundancy:
-            wanted = MOST if request.most is None or request.most > MOST_SOUGHT else request.most
             search = ~self.beyond if request.method == "auto" else np.zeros(len(T), dtype=bool)
             limits, middle = request.own_limits, request.middle
             counting = inside if request.limits else np.ones(len(found), dtype=bool)
             count = np.bincount(found.index[counting], minlength=len(T))
-            more, later = supplemented(analysis, T, limits, middle, request.seed, found, count, wanted, MOST, search)
+            if self.swivel is not None:
+                count, search = np.where(self.swivel.known, MOST_SOUGHT, count), search & ~self.swivel.known
+            more, later = supplemented(
+                analysis, T, limits, middle, request.seed, found, count, request.wanted, MOST, search
+            )
             more, more_inside = _limited(request, more)
             order = np.argsort(np.concatenate([found.index, more.index]), kind="stable")
-            later = np.concatenate([np.zeros(len(found), dtype=np.intp), later])[order]
+            later = np.concatenate([since, later])[order]
             found, inside = merged(found, more).pick(order), np.concatenate([inside, more_inside])[order]
         searches: list[Callable[[Analysis, Array, Array, Array, int], Found]] = []
         if request.method == "numeric" or (request.method == "auto" and analysis.solver is None):
@@ -139,6 +145,29 @@ class TargetBlock:
         whole = len(self.found) == len(found)
         self.count = self.within if whole else np.bincount(self.found.index, minlength=len(T))
         self.cut = self.within > self.count
+
+    def _solved(self) -> tuple[Found, Index]:
+        """What the closed forms and eliminations find, with the generations of what is listed of self-motions (s,).
+
+        `swivel` is what is known of these, and `claims` what may be said.
+        """
+        request, T, analysis = self.request, self.T, self.request.analysis
+        found, self.claims = nothing(request.robot.n), unclaimed(len(T))
+        self.swivel: SwivelAnswers | None = None
+        if request.method == "numeric":
+            return found, np.empty(0, dtype=np.intp)
+        if analysis.solver is not None:
+            bounds = request.own_limits, request.robot.limits
+            self.swivel = known_motions(analysis, T, *bounds, request.near, max(request.wanted, MOST))
+        others = np.arange(len(T)) if self.swivel is None else np.flatnonzero(~self.swivel.known)
+        if len(others):
+            found, self.claims = solve_block(analysis, T[others], request.own_limits, request.near, request.middle)
+        if request.near is not None and analysis.redundancy and not analysis.open:
+            found = _with_more(found, _beside(request, T[others], request.near), np.arange(len(others)))
+        if self.swivel is None:
+            return found, np.zeros(len(found), dtype=np.intp)
+        found, since, self.claims = with_known(found, others, self.swivel)
+        return found, since
 
     def __getstate__(self) -> dict[str, Any]:
         """All but what was asked: the process that asked another one has it, and sets it again."""

@@ -352,7 +352,7 @@ def _of_tree(group: TipGroup, first: Array) -> Result:
         return replace(one, q=whole(one.q), free=numbers(one.free))
 
     def family(one: Family) -> Family:
-        arcs = tuple(Arc(whole(np.atleast_2d(arc.q)), arc.whole) for arc in one.arcs)
+        arcs = tuple(Arc(whole(np.atleast_2d(arc.q)), arc.whole, arc.swivel) for arc in one.arcs)
         return replace(one, joints=numbers(one.joints), arcs=arcs)
 
     return replace(

@@ -46,5 +46,6 @@ def within_tolerance(
         return result
     return replace(
         result, solutions=tuple(solutions), complete=False, basis=None, certificate=NEAREST, families=(),
+        families_complete=False,
         reason=None, nearest=None, postures=False, counts={"listed": len(solutions)},
     )  # fmt: skip

@@ -21,14 +21,16 @@ def family_record(robot: Robot | Tree, units: Units, family: Family, result: Res
         "dimension": family.dimension,
         "closed": family.closed,
         "solution": solution_number(family, result),
-        "intervals": [_interval(arc_values(robot, units, arc), arc.whole, family.joints) for arc in family.arcs],
+        "intervals": [_interval(robot, units, arc, family.joints) for arc in family.arcs],
     }
 
 
-def _interval(q: Array, whole: bool, joints: Sequence[int]) -> dict[str, Any]:
-    """An arc q: (k, n) by its ends, and the minimum and the maximum of each joint that moves."""
+def _interval(robot: Robot | Tree, units: Units, arc: Arc, joints: Sequence[int]) -> dict[str, Any]:
+    """An arc by its ends, and the minimum and the maximum of each joint that moves."""
+    q = arc_values(robot, units, arc)
     ranges = {f"q{i}": [float(q[:, i - 1].min()), float(q[:, i - 1].max())] for i in joints}
-    return {"whole": whole, "from": q[0].tolist(), "to": q[-1].tolist(), "ranges": ranges}
+    interval = {"whole": arc.whole, "from": q[0].tolist(), "to": q[-1].tolist(), "ranges": ranges}
+    return interval if arc.swivel is None else {**interval, "swivel": [end / units.radians for end in arc.swivel]}
 
 
 def arc_values(robot: Robot | Tree, units: Units, arc: Arc) -> Array:

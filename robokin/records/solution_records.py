@@ -19,7 +19,7 @@ from robokin.units import Units
 
 RECORD_KEYS = (
     "schema", "robot", "id", "units", "target", "hold", "reachable", "complete", "basis", "certificate", "counts",
-    "families", "method", "reason", "solutions", "nearest", "explanation",
+    "families", "families_complete", "method", "reason", "solutions", "nearest", "explanation",
 )  # fmt: skip
 """What a document says itself."""
 
@@ -51,6 +51,7 @@ class SolutionRecords:
             "certificate": result.certificate,
             "counts": dict(result.counts),
             "families": [family_record(self.robot, self.units, family, result) for family in result.families],
+            "families_complete": result.families_complete,
             "method": result.method,
             "reason": result.reason,
             "solutions": [self.solution(solution) for solution in result.solutions],

@@ -34,6 +34,7 @@ INTERVAL = record(
         "to": Q,
         "ranges": mapping(numbers("From and to [joint].", 2), "The least and the greatest value of each joint."),
     },
+    {"swivel": numbers("From and to: the elbow's angle about the line from shoulder to wrist [angle].", 2)},
 )
 FAMILY = record(
     "A self-motion: configurations that are connected and all reach the target.",
@@ -115,6 +116,7 @@ def ik() -> Schema:
             "certificate": text("The basis in a sentence, or why there is none."),
             "counts": mapping(whole("A number of candidates.", 0), "How many were left after each step."),
             "families": items(FAMILY, "Self-motions through the target."),
+            "families_complete": flag("Whether every self-motion within the limits is one of `families`."),
             "method": text("How it was solved."),
             "reason": maybe(text("Why there is no solution."), "where there is one"),
             "solutions": items(SOLUTION, "The solutions."),
@@ -160,6 +162,7 @@ def _tips() -> Schema:
             "certificate": text("The basis in a sentence, or why there is none."),
             "counts": mapping(whole("A number of candidates.", 0), "How many were left after each step."),
             "families": items(FAMILY, "Self-motions through the targets."),
+            "families_complete": flag("Whether every self-motion within the limits is one of `families`."),
             "method": text("How it was solved."),
             "reason": maybe(text("Why there is no solution."), "where there is one"),
             "solutions": items(solution, "The solutions."),

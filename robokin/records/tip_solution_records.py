@@ -58,6 +58,7 @@ class TipSolutionRecords:
             "certificate": result.certificate,
             "counts": dict(result.counts),
             "families": [family_record(self.tree, self.units, family, result) for family in result.families],
+            "families_complete": result.families_complete,
             "method": result.method,
             "reason": result.reason,
             "solutions": listed,

@@ -33,6 +33,9 @@ def verdict(result: Result, idle: Sequence[int] = (), held: str = "", turns: boo
         once = ", each self-motion counted once" if any(map(moves_within, result.families)) else ""
         return f"{listed}{held} of all {total}{turned}{once}{but}{rests_on} {method}"
     whole = "these are all" if result.complete else "there may be more"
+    if result.families_complete and not result.complete:
+        within = " within the limits" if "within_limits" in result.counts else ""
+        whole = f"every self-motion{within} is given"
     if result.postures and not result.complete:
         whole = f"these are all{but}"
     listed = counted(len(result.solutions), "solution") if turns else _listed(result)

@@ -20,7 +20,8 @@ from robokin.units import METRES, RADIANS, Units
 
 WRITTEN = frozenset(
     ("schema", "robot", "units", "q", "within_limits", "pose", "frames", "target", "reachable", "complete", "basis",
-     "certificate", "counts", "families", "method", "reason", "solutions", "nearest", "hold", "explanation", "jump",
+     "certificate", "counts", "families", "families_complete", "method", "reason", "solutions", "nearest", "hold",
+     "explanation", "jump",
      "matrix", "position", "task")
 )  # fmt: skip
 """Keys of the documents that `fk` and `ik` write."""

@@ -48,6 +48,7 @@ COMMANDS = [
     ["ik", "puma560", "--pose", POSE, "--explain"], ["ik", "puma560", "--xyz", "9000,0,0"],
     ["ik", "puma560", "--xyz", "500,100,300", "--approach", "0,0,1"], ["ik", "planar2r", "--xy", "1,1"],
     ["ik", "planar3r", "--xyz", "1,1,0"], ["ik", "puma560", "--pose", "Trans(500,100,3000) RPY(180,0,45)"],
+    ["ik", "iiwa14", "--pose", "Trans(500,100,600) RPY(180,0,0)", "--max", "3"],
     ["ik", "panda", "--pose", "Trans(400,0,400) RPY(180,0,0)", "--max", "3"],
     ["ik", "panda", "--pose", "Trans(400,0,400) RPY(180,0,0)", "--hold", "q7=20"],
     ["ik", "planar2r", "--xy", "5,5", "--explain"],

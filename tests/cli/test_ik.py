@@ -23,7 +23,7 @@ REACHED = "Trans(500,100,300) RPY(180,0,45)"
 ARGUMENTS = ["--xyz", "500,100,300", "--rpy", "180,0,45"]
 KEYS = [
     "schema", "robot", "id", "units", "target", "reachable", "complete", "basis", "certificate", "counts", "families",
-    "method", "reason", "solutions", "nearest",
+    "families_complete", "method", "reason", "solutions", "nearest",
 ]  # fmt: skip
 SOLUTION = ["q", "branch", "within_limits", "position_error", "angle_error"]
 COLUMNS = (

@@ -14,7 +14,7 @@ from robokin.inverse.solutions import Arc, Family, Result, Solution
 from robokin.reports import solution_report as answers_module
 from robokin.reports.solution_verdicts import verdict
 
-KEYS = ["complete", "basis", "certificate", "counts", "families", "method"]
+KEYS = ["complete", "basis", "certificate", "counts", "families", "families_complete", "method"]
 """What a document says from `complete` on, in this order."""
 
 TARGET = ["--xyz", "500,100,300", "--rpy", "180,0,45"]

@@ -23,7 +23,7 @@ from robokin.inverse.self_motion.bounded_task import BoundedTask
 from robokin.inverse.self_motion.limit_contacts import contacts
 from robokin.inverse.self_motion.pieces_within import Pieces, far_apart, joined, ranks, rays, spread_over, stepped_on
 from robokin.inverse.solve_blocks import solve_block
-from robokin.inverse.verify import SAME, Found, merged, within_limits, wrapped
+from robokin.inverse.verify import SAME, Found, merged, nothing, within_limits, wrapped
 
 UNPROVEN = "none within the joint limits found by search (not proven unreachable)"
 """The reason where solutions outside the limits are known: a search proves nothing."""
@@ -87,6 +87,8 @@ def supplemented(
     """
     wanted = max(wanted, usual)
     lacking = count < wanted
+    if not lacking.any():
+        return nothing(known.q.shape[1]), np.empty(0, dtype=np.intp)
     known = known.pick(lacking[known.index])
     generation = np.full(len(known), -1)
     none = np.flatnonzero((count == 0) & search)
