@@ -25,7 +25,7 @@ from robokin.jobs.ordered_map import ordered_map
 
 
 @dataclass(frozen=True, eq=False)
-class _Part:
+class _Share:
     """The answers of a block for some targets of the batch: targets: (k,) in rising order, or a slice of them."""
 
     targets: Index | slice
@@ -41,7 +41,7 @@ class _Part:
 
 def answered_batch(request: Request, T: Array, cores: int | None) -> BatchResult:
     """The answers for targets T (m, 4, 4) [m], on some cores, all usable ones for None."""
-    parts: list[_Part] = []
+    parts: list[_Share] = []
     left = None
     if kernel_form(request) is not None:
         lefts = [np.empty(0, dtype=np.intp)]
@@ -49,14 +49,14 @@ def answered_batch(request: Request, T: Array, cores: int | None) -> BatchResult
         for start, plain in zip(_starts(T), answers, strict=True):
             lefts.append(start + np.flatnonzero(~plain.plain))
             whole = slice(start, start + len(plain.plain))
-            parts.append(_Part(start + np.flatnonzero(plain.plain) if len(lefts[-1]) else whole, plain))
+            parts.append(_Share(start + np.flatnonzero(plain.plain) if len(lefts[-1]) else whole, plain))
         left = np.concatenate(lefts)
     others = T if left is None else T[left]
     for start, block in zip(
         _starts(others), ordered_map(partial(TargetBlock, request), _blocks(others), cores), strict=True
     ):
         whole = slice(start, start + len(block.T))
-        parts.append(_Part(whole if left is None else left[whole], block))
+        parts.append(_Share(whole if left is None else left[whole], block))
     for part in parts:
         part.block.request = request
     return _batch(request, len(T), parts)
@@ -70,7 +70,7 @@ def _blocks(T: Array) -> list[Array]:
     return [T[start : start + BLOCK] for start in _starts(T)]
 
 
-def _batch(request: Request, m: int, parts: list[_Part]) -> BatchResult:
+def _batch(request: Request, m: int, parts: list[_Share]) -> BatchResult:
     """The answers of all parts for m targets."""
     n = request.robot.n
     counts = np.zeros(m, dtype=np.intp)
@@ -105,7 +105,7 @@ def _batch(request: Request, m: int, parts: list[_Part]) -> BatchResult:
     return BatchResult(q, counts, position, angle, inside, complete, method, single, names, reason)
 
 
-def _names(parts: list[_Part], counts: Index) -> list[str]:
+def _names(parts: list[_Share], counts: Index) -> list[str]:
     """The names of all solutions, target after target, of which each has so many (m,)."""
     if all(isinstance(part.targets, slice) for part in parts):
         return [name for part in parts for name in part.block.names]

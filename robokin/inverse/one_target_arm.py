@@ -27,7 +27,7 @@ from robokin.model import Robot
 from robokin.model.robot import LIMIT_TOLERANCE, tolerated
 from robokin.spatial.angles import TURN
 
-NO_TAPE = FormTape(np.empty((0, 9)), np.empty(0), np.zeros((1, 6, 2)), 0, 0)
+NO_TAPE = FormTape(np.empty((0, 11)), np.empty(0), np.zeros((1, 6, 2)), 0, 0)
 """What stands for a closed form where there is none, and the native kernel is told the limits alone."""
 
 

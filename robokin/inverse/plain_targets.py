@@ -48,7 +48,7 @@ class PlainBlock(TargetBlock):
             plain = self.plain
             T, count, listed, tables = T[plain], count[plain], listed[plain], [table[plain] for table in tables]
         self.request, self.T, self.tables = request, T, tables
-        self._nearest, self._arcs = {}, {}
+        self._nearest, self._arcs, self.swivel = {}, {}, None
         self.claims = Claims(np.full(len(T), COUNTED, dtype=np.int8), request.analysis.number, count, branches=True)
         self.claims.candidates, self.claims.duplicates = count, np.zeros_like(count)
         self.closing, self.within, self.count = count, listed, listed

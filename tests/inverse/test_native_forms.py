@@ -17,8 +17,11 @@ from robokin.inverse.closed_form.form_tape import OPERATIONS, form_tape
 from robokin.inverse.closed_form.straight_forms import compiled_form, straight_source
 from robokin.inverse.one_target import plain_pose, solve_one
 from robokin.inverse.one_target_arm import one_target_arm
+from robokin.inverse.posture_code import posture_code
+from robokin.inverse.postures import postures_of
 from robokin.inverse.window import least_singular_values
 from robokin.kernel import native_kernel
+from robokin.kernel.chain import chain_of
 from robokin.kernel.native_kernel import handle
 from robokin.model import CoupledRobot, Robot
 
@@ -176,11 +179,12 @@ def test_mirrored_and_far_and_turned_targets_are_left_to_others(rng):
 
 
 MEANING = {
-    "added": lambda a, b, c: a + b, "less": lambda a, b, c: a - b, "times": lambda a, b, c: a * b,
-    "over": lambda a, b, c: a / b, "minus": lambda a, b, c: -a, "root": lambda a, b, c: np.sqrt(a),
-    "magnitude": lambda a, b, c: abs(a), "signed": lambda a, b, c: np.copysign(a, b),
-    "clamped": lambda a, b, c: min(max(a, -1.0), 1.0), "chosen": lambda a, b, c: b if a > 0.0 else c,
-    "greater": lambda a, b, c: max(a, b), "angle": lambda a, b, c: np.arctan2(a, b),
+    "added": lambda a, b, c, d: a + b, "less": lambda a, b, c, d: a - b, "times": lambda a, b, c, d: a * b,
+    "over": lambda a, b, c, d: a / b, "minus": lambda a, b, c, d: -a, "root": lambda a, b, c, d: np.sqrt(a),
+    "magnitude": lambda a, b, c, d: abs(a), "signed": lambda a, b, c, d: np.copysign(a, b),
+    "clamped": lambda a, b, c, d: min(max(a, -1.0), 1.0), "chosen": lambda a, b, c, d: b if a > 0.0 else c,
+    "greater": lambda a, b, c, d: max(a, b), "angle": lambda a, b, c, d: np.arctan2(a, b),
+    "paired": lambda a, b, c, d: a * b + c * d, "crossed": lambda a, b, c, d: a * b - c * d,
 }  # fmt: skip
 
 
@@ -190,12 +194,12 @@ def interpreted(tape, rows, roots):
     values[:12], values[12 : 12 + len(tape.constants)] = rows, tape.constants
     for operation, out, level, *where in tape.steps.astype(int).tolist():
         name = OPERATIONS[operation]
-        a, b, c = values[where[::2]].tolist()
+        a, b, c, d = values[where[::2]].tolist()
         if name in ("real", "needed", "lever"):
             if not a >= b:
                 return name
         elif name != "entered":
-            values[out] = MEANING[name](a, b, c) if name != "both" else b if roots[level - 1] else a
+            values[out] = MEANING[name](a, b, c, d) if name != "both" else b if roots[level - 1] else a
     return values[tape.leaves[:, :, 0].astype(int)].tolist()
 
 
@@ -232,6 +236,50 @@ def parts():
     return [handle(arm.analysis.six.chain), links, sizes, tape.steps, tape.constants, tape.leaves, tape.levels, limits]
 
 
+def test_signs_that_name_postures_are_those_of_python(instructions, rng):
+    told = 0
+    for robot in [*map(entry, names_of(Robot, least=6, most=6)[::6]), *(arms.random_chain(rng) for _ in range(12))]:
+        if isinstance(robot, CoupledRobot) or robot.n != 6:
+            continue
+        postures = postures_of(chain_of(robot))
+        known = posture_code(postures)
+        if known is None:
+            assert postures.numbered or not postures.signs
+            continue
+        told += 1
+        q = np.concatenate([rng.uniform(-3.0, 3.0, (20, 6)), np.pi / 12 * rng.integers(-12, 13, (41, 6))])
+        axes = postures.axes(q)
+        expected = sum(sign.holds(axes).astype(int) << bit for bit, sign in enumerate(postures.signs))
+        np.testing.assert_array_equal(native.sides(known, q), expected)
+        np.testing.assert_array_equal(native.sides(known, q[::-1]), expected[::-1])
+        assert [native.sides(known, one[None])[0] for one in q[:9]] == expected[:9].tolist()
+    assert told > 8
+
+
+def test_hostile_signs_are_refused():
+    chain, none = parts()[0], np.zeros((0, 11))
+    zero, first = np.zeros(0), np.zeros((1, 2))
+    known = native.signs(chain, 1.0, none, zero, first)
+    with pytest.raises(ValueError):
+        native.sides(known, np.zeros((3, 5)))
+    with pytest.raises(ValueError):
+        native.sides(chain, np.zeros((3, 6)))
+    with pytest.raises((TypeError, ValueError)):
+        native.sides(known, [0.0] * 6)
+    with pytest.raises(ValueError):
+        native.solution(known, np.eye(4), True, None)
+    wrong = [
+        (known, 1.0, none, zero, first), (chain, 0.0, none, zero, first), (chain, np.nan, none, zero, first),
+        (chain, 1.0, np.zeros((1, 8)), zero, first), (chain, 1.0, none, np.zeros(600), first),
+        (chain, 1.0, none, zero, first + 512), (chain, 1.0, none, zero, np.zeros((7, 2))),
+        (chain, 1.0, np.zeros((1, 11)), zero, first), (chain, 1.0, none, zero, np.array([[3.0, 1.0]])), (chain, 1.0),
+    ]  # fmt: skip
+    for arguments in wrong:
+        with pytest.raises((TypeError, ValueError)):
+            native.signs(*arguments)
+    assert len(native.sides(known, np.zeros((0, 6)))) == 0
+
+
 def test_hostile_forms_are_refused(rng):
     good = parts()
     native.form(*good)
@@ -241,7 +289,7 @@ def test_hostile_forms_are_refused(rng):
         0: [None, "chain", three, slide, good],
         1: [good[1][0], good[1][:, :3], np.zeros((3, 4, 4)), None],
         2: [np.zeros(2), np.array([1.0, np.nan]), np.ones(3), 1.0, -good[2]],
-        3: [good[3][:, :8], np.zeros((5000, 9)), None, good[3][:, 0]],
+        3: [good[3][:, :9], np.zeros((5000, 11)), None, good[3][:, 0]],
         4: [np.zeros(600), None],
         5: [good[5][:, :5], np.tile(good[5], (3, 1, 1)), good[5][:0], good[5] + 0.5, good[5] + 600.0, -good[5] - 1.0],
         6: [-1, 4, 0.5, np.nan, "2", None, 1e300, 1],
@@ -255,8 +303,8 @@ def test_hostile_forms_are_refused(rng):
                 native.form(*arguments)
     for _ in range(300):
         steps = good[3].copy()
-        row, column = rng.integers(len(steps)), rng.integers(9)
-        steps[row, column] = rng.choice([-1.0, 17.0, 512.0, 511.0, 4.0, 0.5, np.nan, np.inf, 1e300, -1e300])
+        row, column = rng.integers(len(steps)), rng.integers(11)
+        steps[row, column] = rng.choice([-1.0, 19.0, 512.0, 511.0, 4.0, 0.5, np.nan, np.inf, 1e300, -1e300])
         try:
             form = native.form(*good[:3], steps, *good[4:])
         except ValueError:

@@ -4,8 +4,9 @@ Statement. Give the operations of a `straight_form` as a table that needs no int
 registers, on how many roots at a time.
 Derivation. The source is read again, statement by statement, so that each formula has one home and every root comes
 from the same operations in the same order. A loop over two roots is a new level: a register of level k holds 2^k
-numbers, one for each root that was chosen so far. What depends on no root of a level is worked out for all of them at
-once, the same product is worked out once, and a register whose number is not asked for any more is given to another.
+numbers, one for each root that was chosen so far. What depends on no root of a level is worked out for all of
+them at once, the same product is worked out once, two products and their sum are one step, and a register whose number
+is not asked for any more is given to another.
 Degenerate case. `return None` is a condition for there being an answer, `continue` one for a root being real. Of a
 condition on a lever only the last of which is known that nothing but nearness is at stake: the kernel looks at that.
 Source that is not understood has no tape (None).
@@ -14,6 +15,7 @@ Source that is not understood has no tape (None).
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +25,7 @@ from robokin.inverse.closed_form.gather import LEVER
 
 OPERATIONS = (
     "added", "less", "times", "over", "minus", "root", "magnitude", "signed", "clamped", "chosen", "greater", "angle",
-    "entered", "both", "real", "needed", "lever",
+    "paired", "crossed", "entered", "both", "real", "needed", "lever",
 )  # fmt: skip
 """What a step may do, in the kernel's order (native/tape.h)."""
 
@@ -34,6 +36,11 @@ BINARY: dict[type[ast.operator], str] = {
     ast.Div: "over",
 }
 
+SUMS = {"added": "paired", "less": "crossed"}
+
+_Step = tuple[str, int, tuple[int, ...], int]
+"""The operation, the register of its result or -1, those of its operands, and the level."""
+
 CALLS = {"sqrt": "root", "abs": "magnitude", "copysign": "signed", "max": "greater"}
 
 
@@ -41,7 +48,7 @@ CALLS = {"sqrt": "root", "abs": "magnitude", "copysign": "signed", "max": "great
 class FormTape:
     """A tape.
 
-    steps: (k, 9) the operation, and first slot and level of its result and of three operands; constants: (c,), which
+    steps: (k, 11) the operation, and first slot and level of its result and of four operands; constants: (c,), which
     the slots after the inputs hold; leaves: (r, 6, 2) where the joint values [rad] of the roots are; levels: how many
     loops over two roots there are; slots: how many slots there are.
     """
@@ -57,14 +64,14 @@ class _UnknownError(Exception):
     """A piece of source that has no tape."""
 
 
-class _Reader:
+class _SourceReader:
     """Registers and steps, as the source is read: a register is its number, `levels[number]` its level."""
 
     def __init__(self) -> None:
         self.levels: list[int] = []
         self.inputs = 0
         self.constants: dict[str, int] = {}
-        self.steps: list[tuple[str, int, tuple[int, ...], int]] = []
+        self.steps: list[_Step] = []
         self.known: dict[tuple[str, tuple[int, ...]], int] = {}
         self.names: dict[str, int] = {}
         self.level = 0
@@ -187,7 +194,7 @@ def form_tape(source: str) -> FormTape | None:
     """The tape of a closed form's code; None where some of it has none."""
     (function,) = ast.parse(source).body
     assert isinstance(function, ast.FunctionDef)
-    reader = _Reader()
+    reader = _SourceReader()
     try:
         reader.statements(function.body)
     except _UnknownError:
@@ -195,16 +202,36 @@ def form_tape(source: str) -> FormTape | None:
     return _placed(reader)
 
 
-def _placed(reader: _Reader) -> FormTape:
+def _joined(reader: _SourceReader) -> list[_Step]:
+    """The steps, with sums of two products that nothing else asks for as one step each."""
+    uses = Counter(one for _, _, operands, _ in reader.steps for one in operands)
+    uses.update(one for leaf in reader.leaves for one in leaf)
+    products = {
+        result: operands
+        for operation, result, operands, level in reader.steps
+        if operation == "times" and uses[result] == 1
+    }
+    steps: list[_Step] = []
+    gone: set[int] = set()
+    for operation, result, operands, level in reader.steps:
+        if operation in SUMS and all(one in products and reader.levels[one] == level for one in operands):
+            gone.update(operands)
+            operation, operands = SUMS[operation], (*products[operands[0]], *products[operands[1]])
+        steps.append((operation, result, operands, level))
+    return [step for step in steps if step[1] not in gone]
+
+
+def _placed(reader: _SourceReader) -> FormTape:
     """The tape with a place for each register, given to another when it is asked for no more."""
     slots = {k: k for k in range(reader.inputs)}
     slots |= {one: reader.inputs + k for k, one in enumerate(reader.constants.values())}
     kept = {*slots, *(one for leaf in reader.leaves for one in leaf)}
-    last = {one: k for k, (_, _, operands, _) in enumerate(reader.steps) for one in operands}
+    joined = _joined(reader)
+    last = {one: k for k, (_, _, operands, _) in enumerate(joined) for one in operands}
     free: dict[int, list[int]] = {}
     end = len(slots)
     steps = []
-    for k, (operation, result, operands, level) in enumerate(reader.steps):
+    for k, (operation, result, operands, level) in enumerate(joined):
         slot = 0
         if result >= 0:
             if free.get(level):
@@ -213,7 +240,7 @@ def _placed(reader: _Reader) -> FormTape:
                 slot, end = end, end + 2**level
             slots[result] = slot
         where = [(slots[one], reader.levels[one]) for one in operands]
-        where += [(0, 0)] * (3 - len(where))
+        where += [(0, 0)] * (4 - len(where))
         steps.append([OPERATIONS.index(operation), slot, level, *(number for place in where for number in place)])
         for one in {*operands, result} - kept - {-1}:
             if last.get(one, k) == k:

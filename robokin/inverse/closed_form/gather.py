@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.closed_form.joint_functions import Motion
+from robokin.inverse.closed_form.trigonometry import Turn
 from robokin.inverse.elimination.loop import Candidates
 from robokin.kernel.entries import (
     Entry,
@@ -25,6 +26,11 @@ def in_front(values: NDArray[Scalar], branches: Array | Flags) -> NDArray[Scalar
     """Values (2, …) with the first axis in front of all of branches' axes, also where the rest is common to some."""
     missing = branches.ndim + 1 - values.ndim
     return values.reshape(values.shape[0], *(1,) * max(missing, 0), *values.shape[1:])
+
+
+def turn_in_front(turn: Turn, branches: Flags) -> Turn:
+    """Cosine and sine with the first axis in front of all of branches' axes."""
+    return in_front(np.asarray(turn[0]), branches), in_front(np.asarray(turn[1]), branches)
 
 
 def chosen_positions(positions: Sequence[Motion], chosen: Flags) -> tuple[list[Motion], Index]:

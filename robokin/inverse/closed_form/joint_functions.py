@@ -229,3 +229,17 @@ def _gradient(form: Form) -> tuple[float, float]:
 def _turn(motion: Motion) -> Turn:
     c, s = motion
     return c, s
+
+
+def seen_turned(h: Vector, alpha: Vector) -> Form:
+    """(R_aᵀ h) · α as a function of q_a."""
+    return [
+        times(h[2], alpha[2]),
+        plus(times(h[0], alpha[0]), times(h[1], alpha[1])),
+        minus(times(h[1], alpha[0]), times(h[0], alpha[1])),
+    ]
+
+
+def square_across(v: Vector) -> Entry:
+    """x² + y² of a vector."""
+    return plus(times(v[0], v[0]), times(v[1], v[1]))

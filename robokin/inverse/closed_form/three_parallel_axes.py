@@ -49,6 +49,7 @@ from robokin.inverse.closed_form.gather import (
     gathered,
     in_front,
     joined,
+    turn_in_front,
 )
 from robokin.inverse.closed_form.joint_functions import (
     FAN,
@@ -61,6 +62,8 @@ from robokin.inverse.closed_form.joint_functions import (
     combined,
     kind,
     loose,
+    seen_turned,
+    square_across,
 )
 from robokin.inverse.closed_form.loop_axes import ORDINALS, SingularEverywhereError, tilt
 from robokin.inverse.closed_form.planar_elbow import PlanarElbow
@@ -82,7 +85,6 @@ from robokin.kernel.entries import (
     columns,
     constant,
     dot,
-    minus,
     moved_back,
     multiplied,
     plus,
@@ -188,8 +190,8 @@ class ThreeParallel:
         """f(q_a), case 1: direction and height less what they have of cos q_c and sin q_c."""
         h, u, beta = D.R[2], self.u, self.beta
         return [
-            combined((1.0, -1.0), (_seen(h, [row[2] for row in A.R]), [times(u[2], beta[0][2])])),
-            combined((1.0, 1.0, 1.0), (_seen(h, A.t), [times(u[2], beta[1][2])], [self._offset(D)])),
+            combined((1.0, -1.0), (seen_turned(h, [row[2] for row in A.R]), [times(u[2], beta[0][2])])),
+            combined((1.0, 1.0, 1.0), (seen_turned(h, A.t), [times(u[2], beta[1][2])], [self._offset(D)])),
         ]
 
     def _first(self, f: list[Form]) -> tuple[Motion, Flags, Flags | None]:
@@ -216,12 +218,12 @@ class ThreeParallel:
                 q_b, q_c, reached = two_turns(self.B.R, self.u, w)
             else:
                 q_c, reached = linear_roots(*self.height, times(-1.0, Revolute.at(f[1], q_a)))
-                q_c = _in_front(q_c, real)
+                q_c = turn_in_front(q_c, real)
                 q_b = turn_between(applied(self.B.R, Revolute.onward(q_c, self.u)), w)
-            q_b, q_c = (_in_front(turn, real) for turn in (q_b, q_c))
+            q_b, q_c = (turn_in_front(turn, real) for turn in (q_b, q_c))
             real = real[None] & in_front(reached, real)
         marks.short(w[0], w[1], index)
-        return self._elbows_and_families(A, D, (q_a, q_b, q_c), real, _square(w), index, marks)
+        return self._elbows_and_families(A, D, (q_a, q_b, q_c), real, square_across(w), index, marks)
 
     def _directions(self, A: EntryFrame, D: EntryFrame) -> tuple[Matrix, Vector, Vector]:
         """P, s and w of Rz(α) P Rz(β) s = w, case 2."""
@@ -236,7 +238,7 @@ class ThreeParallel:
         P, s, w = self._directions(A, D)
         alpha, beta, real = two_turns(P, s, w)
         found = self._from_turns(A, D, alpha, beta, real, index, marks)
-        aligned = np.asarray(times(_square(P[2]), _square(s)) < LOOSE**2) & real[0]
+        aligned = np.asarray(times(square_across(P[2]), square_across(s)) < LOOSE**2) & real[0]
         if not aligned.any():
             return found
         # Two axes are parallel: β turns the direction about itself, or α undoes what β does.
@@ -259,16 +261,16 @@ class ThreeParallel:
         if self.b is Prismatic:
             q_a, q_c = alpha, beta
             before, after = Revolute.back(q_a, h), Revolute.onward(q_c, u)
-            slope, lever = applied_back(A.R, before)[2], _square(h)
+            slope, lever = applied_back(A.R, before)[2], square_across(h)
         elif self.a is Prismatic:
             q_b, q_c = alpha, beta
             before, after = h, Revolute.onward(q_c, u)
-            slope, lever = h[2], _square(applied_back(A.R, h))
+            slope, lever = h[2], square_across(applied_back(A.R, h))
         else:
             # Rz(-q_b) R_Aᵀ Rz(-q_a) h = R_B u.
             q_b, q_a = (alpha[0], times(-1.0, alpha[1])), (beta[0], times(-1.0, beta[1]))
             before, after = Revolute.back(q_a, h), u
-            slope, lever = u[2], _square(applied(self.B.R, u))
+            slope, lever = u[2], square_across(applied(self.B.R, u))
         height = plus(plus(dot(before, A.t), dot(after, self.beta[1])), self._offset(D))
         lost = np.abs(np.asarray(slope)) < RANK
         length: Motion = (np.where(lost, 0.0, np.asarray(times(-1.0, height)) / np.where(lost, 1.0, slope)),)
@@ -314,7 +316,7 @@ class ThreeParallel:
         """The candidates for given positions of a, b and c."""
         p, across = self.seen_from_first(A, D, positions)
         turn, reached = self.elbow.roots(p)
-        turn = _in_front(turn, real)
+        turn = turn_in_front(turn, real)
         joints = (self.a, self.b, self.c)
         values = [joint.value(position) for joint, position in zip(joints, positions, strict=True)]
         values += self.elbow.values(p, across, turn)
@@ -343,20 +345,3 @@ class ThreeParallel:
 
         turn, real = self.elbow.reaching(point((1.0, 0.0)), point((0.0, 1.0)), point((-1.0, 0.0)))
         return self._plane(A, D, with_turn(turn), real, index)
-
-
-def _seen(h: Vector, alpha: Vector) -> Form:
-    """(R_aᵀ h) · α as a function of q_a."""
-    return [
-        times(h[2], alpha[2]),
-        plus(times(h[0], alpha[0]), times(h[1], alpha[1])),
-        minus(times(h[1], alpha[0]), times(h[0], alpha[1])),
-    ]
-
-
-def _square(v: Vector) -> Entry:
-    return plus(times(v[0], v[0]), times(v[1], v[1]))
-
-
-def _in_front(turn: Turn, branches: Flags) -> Turn:
-    return in_front(np.asarray(turn[0]), branches), in_front(np.asarray(turn[1]), branches)

@@ -57,18 +57,20 @@ static int apart(const Place *a, const Place *b) {
     return a->slot + (1 << a->level) <= b->slot || b->slot + (1 << b->level) <= a->slot;
 }
 
-/* The steps of a tape (k, 9): operation, and slot and level of out, a, b and c. */
+/* The steps of a tape (k, 11): operation, and slot and level of out, a, b, c and d. */
+#define WIDTH 11
+
 static int taped(Form *form, const double *from) {
-    for (int k = 0; k < form->steps; k++, from += 9) {
+    for (int k = 0; k < form->steps; k++, from += WIDTH) {
         Step *step = form->tape + k;
         step->op = whole(from[0], OPERATIONS);
         if (step->op < 0 || !placed(from + 1, &step->out) || !placed(from + 3, &step->a) ||
-            !placed(from + 5, &step->b) || !placed(from + 7, &step->c))
+            !placed(from + 5, &step->b) || !placed(from + 7, &step->c) || !placed(from + 9, &step->d))
             return 0;
         int told = step->op == REAL || step->op == NEEDED || step->op == LEVER || step->op == ENTERED;
         /* What is written is read by no operand of the same step, and is no constant. */
         if (!told && (step->out.slot < form->inputs + form->constants || !apart(&step->out, &step->a) ||
-                      !apart(&step->out, &step->b) || !apart(&step->out, &step->c)))
+                      !apart(&step->out, &step->b) || !apart(&step->out, &step->c) || !apart(&step->out, &step->d)))
             return 0;
         if ((step->op == ENTERED || step->op == BOTH) && step->out.level < 1)
             return 0;
@@ -104,12 +106,12 @@ static PyObject *form(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     sizes = limits ? doubles(args[2], 1, &copies[5]) : NULL;
     if (!sizes)
         goto end;
-    npy_intp steps = PyArray_SIZE(tape) / 9, many = PyArray_SIZE(constants), roots = PyArray_SIZE(leaves) / (2 * SIX);
+    npy_intp steps = PyArray_SIZE(tape) / WIDTH, many = PyArray_SIZE(constants), roots = PyArray_SIZE(leaves) / (2 * SIX);
     const double *size = PyArray_DATA(sizes);
     int high = whole(levels, MOST_LEVELS + 1), turning = chain->n == SIX;
     for (int i = 0; turning && i < SIX; i++)
         turning = chain->revolute[i];
-    if (!turning || PyArray_SIZE(links) != 32 || steps > MOST_STEPS || PyArray_SIZE(tape) != 9 * steps ||
+    if (!turning || PyArray_SIZE(links) != 32 || steps > MOST_STEPS || PyArray_SIZE(tape) != WIDTH * steps ||
         many > MOST_SLOTS - ROWS || roots < 1 || high < 0 || roots > MOST_ROOTS >> high ||
         PyArray_SIZE(leaves) != 2 * SIX * roots || PyArray_SIZE(limits) != 7 * SIX || PyArray_SIZE(sizes) != 2 ||
         !(size[0] > 0.0 && size[1] > 0.0)) {
@@ -177,8 +179,8 @@ static PyObject *signs(PyObject *self, PyObject *const *args, Py_ssize_t count) 
     places = constants ? doubles(args[4], 2, &copies[2]) : NULL;
     if (!places)
         goto end;
-    npy_intp steps = PyArray_SIZE(tape) / 9, many = PyArray_SIZE(constants), bits = PyArray_SIZE(places) / 2;
-    if (chain->n != SIX || steps > MOST_STEPS || PyArray_SIZE(tape) != 9 * steps || many > MOST_SLOTS - AXES ||
+    npy_intp steps = PyArray_SIZE(tape) / WIDTH, many = PyArray_SIZE(constants), bits = PyArray_SIZE(places) / 2;
+    if (chain->n != SIX || steps > MOST_STEPS || PyArray_SIZE(tape) != WIDTH * steps || many > MOST_SLOTS - AXES ||
         bits > SIX || PyArray_SIZE(places) != 2 * bits || !(size > 0.0)) {
         PyErr_SetString(PyExc_ValueError, "arrays of signs do not fit each other");
         goto end;

@@ -101,10 +101,11 @@ static inline void run_tape(const Form *form, Worked *at, int flat) {
     OVER_LANES at->lost[l] = at->near[l] = 0;
     for (const Step *step = form->tape, *end = step + form->steps; step < end; step++) {
         Slot *out = at->v + step->out.slot;
-        const Slot *a = at->v + step->a.slot, *b = at->v + step->b.slot, *c = at->v + step->c.slot;
+        const Slot *a = at->v + step->a.slot, *b = at->v + step->b.slot, *c = at->v + step->c.slot,
+                   *d = at->v + step->d.slot;
         int level = step->out.level;
         int mask_a = flat ? 0 : (1 << step->a.level) - 1, mask_b = flat ? 0 : (1 << step->b.level) - 1,
-            mask_c = flat ? 0 : (1 << step->c.level) - 1;
+            mask_c = flat ? 0 : (1 << step->c.level) - 1, mask_d = flat ? 0 : (1 << step->d.level) - 1;
         Truth *real = at->real[flat ? 0 : level];
         wide = flat ? 1 : 1 << level;
         switch (step->op) {
@@ -114,6 +115,10 @@ static inline void run_tape(const Form *form, Worked *at, int flat) {
             EACH(x - y);
         case TIMES:
             EACH(x * y);
+        case PAIRED:
+            EACH(x * y + ((const Part *)c[k & mask_c])[h] * ((const Part *)d[k & mask_d])[h]);
+        case CROSSED:
+            EACH(x * y - ((const Part *)c[k & mask_c])[h] * ((const Part *)d[k & mask_d])[h]);
         case OVER:
             EACH(x / y);
         case MINUS:

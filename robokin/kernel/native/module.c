@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* As robokin.kernel.native_module expects it. */
-#define INTERFACE 3
+#define INTERFACE 4
 
 /* numpy has no more, whatever its version. */
 #define MOST_DIMENSIONS 64

@@ -41,6 +41,8 @@ enum Operation {
     CHOSEN,    /* b where a > 0, else c */
     GREATER,   /* the greater of a and b */
     ANGLE,     /* atan2(a, b) */
+    PAIRED,    /* a b + c d */
+    CROSSED,   /* a b - c d */
     ENTERED,   /* a new level, `out` */
     BOTH,      /* a for the first root of the level of `out`, b for the second */
     REAL,      /* only roots for which a >= b */
@@ -58,7 +60,7 @@ typedef struct {
 
 typedef struct {
     int op;
-    Place out, a, b, c;
+    Place out, a, b, c, d;
 } Step;
 
 typedef struct {
