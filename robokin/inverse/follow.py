@@ -20,6 +20,7 @@ from robokin.inverse.verify import CLOSES
 from robokin.kernel.damped_newton import brought_down, limited, singular_step
 from robokin.kernel.frames import pose
 from robokin.kernel.residual import error_and_jacobian
+from robokin.kinematics.jacobian import jacobian
 from robokin.model import CoupledRobot, Robot
 from robokin.spatial.angles import circled
 
@@ -63,7 +64,8 @@ class Follower:
         self.robot, self.at, self.task, self.s = robot, at, task, s
         self.analysis = analysis_of(robot, task)
         self.scale = np.where(robot.revolute, 1.0, self.analysis.size)
-        self.numeric = bool(self.analysis.redundancy or self.analysis.idle) or self.analysis.solver is None
+        self.spare = bool(self.analysis.redundancy or self.analysis.idle)
+        self.numeric = self.spare or self.analysis.solver is None
         self.block: tuple[int, Array, Index] | None = None
         self.poses = at(s)
         self.ahead = np.zeros(robot.n)
@@ -73,8 +75,10 @@ class Follower:
         end = float(self.s[i])
         found = self.track(q, self.poses[i], self.ahead) if self.numeric else self.chosen(self.listed(i), q)
         if found is not None and self.move(q, found) <= NEAR:
-            # Steps grow and shrink slowly with the time law: the last one is a good guess of the next.
-            self.ahead = found - q
+            # Steps grow and shrink slowly with the time law: the last one is a good guess of the next. Not where joints
+            # are to spare: what they did with the tool at rest would go on and on.
+            if not self.spare:
+                self.ahead = found - q
             return end, found, ""
         self.ahead = np.zeros_like(q)
         return self.halved(q, before, end)
@@ -246,6 +250,8 @@ class DrivenFollower(Follower):
         self.poses = at(s)
         self.ahead = np.zeros(robot.n)
         away = np.random.default_rng(0).uniform(-1.0, 1.0, (AROUND_EACH, robot.n))
+        moved = jacobian(robot, self.scale * away[0])[: 3 if task == "position" else 6]
+        self.spare = bool(np.linalg.matrix_rank(moved * self.scale, tol=1e-9 * np.max(np.abs(moved))) < robot.n)
         self._around = np.concatenate([np.zeros((1, robot.n)), *(far * away for far in AROUND)])
 
     def track(self, q: Array, T: Array, ahead: Array) -> Array | None:

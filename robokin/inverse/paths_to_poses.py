@@ -58,18 +58,14 @@ def path_through(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, 
     """A path from joint values start (n,) [rad | m] through all goals, to a pose by the solution nearest to the last.
 
     A position alone keeps the orientation of what was before, where the arm can turn its tool. A pose that is not
-    reached makes a path of its start alone. steps: of the whole path by joints, of each piece of a line.
+    reached makes a path of its start alone. steps: of the whole path by joints, of each piece of a line. A duration is of
+    the whole path: pieces of a line share it as the least times that the limits allow them, evenly where there are none.
     """
     if manner.way == "joint":
         return _by_joints(robot, start, goals, steps, manner)
     if manner.way == "arc" and len(goals) > 1:
         raise InputError(f"found {len(goals)} ends of an arc, expected one")
-    paths: list[Path] = []
-    for goal in goals:
-        path = _by_tool(robot, paths[-1].q[-1] if paths else start, goal, steps, manner)
-        paths.append(path)
-        if not path.complete:
-            break
+    paths = _pieces(robot, start, goals, steps, manner)
     # What is not reached counts as a part of the way.
     paths_left = len(goals) - len(paths)
     whole = joined(paths)
@@ -78,6 +74,37 @@ def path_through(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, 
     share = len(paths) / len(goals)
     events = tuple(replace(event, fraction=event.fraction * share) for event in whole.events)
     return replace(whole, s=whole.s * share, fraction=whole.fraction * share, events=events)
+
+
+def _pieces(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> list[Path]:
+    """The tool along a line to each goal, or along an arc, as far as it gets."""
+    timing = manner.timing
+    if timing is None or timing.duration is None or len(goals) == 1:
+        return _followed(robot, start, goals, steps, [manner] * len(goals))
+    # The pieces as fast as they may be say how they share the duration.
+    free = replace(manner, timing=replace(timing, duration=None, rate=None))
+    fastest = [path.duration or 1.0 for path in _followed(robot, start, goals, steps, [free] * len(goals))]
+    longer = timing.duration / (sum(fastest) * len(goals) / len(fastest))
+    bounded = bool(np.isfinite([timing.limits.velocity, timing.limits.acceleration]).any())
+    if bounded and longer < 1.0 - 1e-9:
+        least = timing.duration / longer
+        raise InputError(f"found a duration of {timing.duration:g} s, expected at least {least:.6g} s within the limits")
+    longer = max(longer, 1.0) if bounded else longer
+    manners = [replace(manner, timing=replace(timing, duration=longer * time)) for time in fastest]
+    return _followed(robot, start, goals, steps, manners)
+
+
+def _followed(
+    robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manners: Sequence[Manner]
+) -> list[Path]:
+    """The tool to each goal in its manner, as far as it gets."""
+    paths: list[Path] = []
+    for goal, manner in zip(goals, manners, strict=False):
+        path = _by_tool(robot, paths[-1].q[-1] if paths else start, goal, steps, manner)
+        paths.append(path)
+        if not path.complete:
+            break
+    return paths
 
 
 def _by_joints(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> Path:

@@ -215,7 +215,7 @@ def test_velocities_of_a_line_are_derivatives_and_its_twist_is_straight(robot, s
 
 def test_a_line_passes_its_points_with_a_stop_at_each():
     start, mid, end = [0.5, 0.9], [0.8, 0.7], [1.3, 0.4]
-    timing = Timing(motion_limits(PLANAR, None, None), "cubic", 2.0)
+    timing = Timing(motion_limits(PLANAR, None, None), "cubic", 4.0)
     path = path_through(
         PLANAR, np.array(start), [Goal(np.array(mid)), Goal(np.array(end))], 50, Manner("line", timing=timing)
     )
@@ -223,6 +223,31 @@ def test_a_line_passes_its_points_with_a_stop_at_each():
     np.testing.assert_allclose(path.q[[0, 50, 100]], [start, mid, end], atol=1e-9)
     assert np.abs(path.velocity[[0, 50, 100]]).max() < 1e-9 and (np.diff(path.t) > 0).all()
     assert path.s[[0, 50, 100]] == pytest.approx([0, 0.5, 1])
+
+
+@pytest.mark.parametrize("rate", [None, 40.0])
+def test_a_duration_is_of_the_whole_line(rate):
+    goals = [Goal(np.array([0.8, 0.7])), Goal(np.array([1.3, 0.4]))]
+    start, bounds = np.array([0.5, 0.9]), motion_limits(PLANAR, 0.5, None)
+    least = path_through(PLANAR, start, goals, 50, Manner("line", timing=Timing(bounds, rate=rate)))
+    slow = path_through(PLANAR, start, goals, 50, Manner("line", timing=Timing(bounds, duration=4.0, rate=rate)))
+    assert slow.complete and slow.t[-1] == pytest.approx(4.0) and slow.duration == pytest.approx(4.0)
+    assert np.abs(slow.velocity).max() <= 0.5 * least.duration / 4.0 * 1.001  # all pieces are slower by the same factor
+    with pytest.raises(InputError, match=f"expected at least {least.duration:.6g} s within the limits"):
+        path_through(PLANAR, start, goals, 50, Manner("line", timing=Timing(bounds, duration=0.99 * least.duration)))
+
+
+@pytest.mark.parametrize("end", [None, [0.35, 0.7, 0.17, -1.22, 0.35, 0.87, 0.52]])
+def test_joints_to_spare_come_to_rest_with_the_tool(end):
+    arm = robokin.load("iiwa14")
+    start = np.radians([0, 30, 0, -60, 0, 60, 0])
+    goal = Goal(T=robokin.transform("Trans(0.5, 0.3, 0.5) RPY(0, 3, 0)")) if end is None else Goal(np.array(end))
+    path = path_through(arm, start, [goal], 200, Manner("line", timing=Timing(motion_limits(arm, 1.0, None))))
+    assert path.complete and np.abs(path.velocity[[0, -1]]).max() < 1e-4
+    # What leaves the tool where it is is no part of the motion, but for what steps of a finite length make.
+    J = robokin.jacobian(arm, path.q)
+    spare = path.velocity - np.einsum("mij,mjk,mk->mi", np.linalg.pinv(J), J, path.velocity)
+    assert np.abs(spare).max() < 1e-3
 
 
 def test_a_line_that_ends_before_its_points():
