@@ -58,8 +58,8 @@ def path_through(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, 
     """A path from joint values start (n,) [rad | m] through all goals, to a pose by the solution nearest to the last.
 
     A position alone keeps the orientation of what was before, where the arm can turn its tool. A pose that is not
-    reached makes a path of its start alone. steps: of the whole path by joints, of each piece of a line. A duration is of
-    the whole path: pieces of a line share it as the least times that the limits allow them, evenly where there are none.
+    reached makes a path of its start alone. steps: of the whole path by joints, of each piece of a line. A duration is
+    of the whole path: pieces of a line share it like the least times that limits allow them, evenly without limits.
     """
     if manner.way == "joint":
         return _by_joints(robot, start, goals, steps, manner)
@@ -88,15 +88,14 @@ def _pieces(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manne
     bounded = bool(np.isfinite([timing.limits.velocity, timing.limits.acceleration]).any())
     if bounded and longer < 1.0 - 1e-9:
         least = timing.duration / longer
-        raise InputError(f"found a duration of {timing.duration:g} s, expected at least {least:.6g} s within the limits")
+        found = f"found a duration of {timing.duration:g} s"
+        raise InputError(f"{found}, expected at least {least:.6g} s within the limits")
     longer = max(longer, 1.0) if bounded else longer
     manners = [replace(manner, timing=replace(timing, duration=longer * time)) for time in fastest]
     return _followed(robot, start, goals, steps, manners)
 
 
-def _followed(
-    robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manners: Sequence[Manner]
-) -> list[Path]:
+def _followed(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manners: Sequence[Manner]) -> list[Path]:
     """The tool to each goal in its manner, as far as it gets."""
     paths: list[Path] = []
     for goal, manner in zip(goals, manners, strict=False):

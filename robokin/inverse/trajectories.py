@@ -42,6 +42,9 @@ LONGEST = 1e9
 CLOSES = 1e-6
 """How far J q' may be off the twist, relatively: beyond that the configuration is singular."""
 
+LOOKED_AT = 100
+"""Steps of a line at least at which limits of velocity and acceleration are held."""
+
 DIFFERENCE = 1e-5
 """The step along a line, as a part of it, between whose sides q'' is the difference of q'."""
 
@@ -119,10 +122,13 @@ def timed_curve(
 ) -> Path:
     """The tool along a curve from where it is at joint values first (n,), in time: see `follow_curve`, `timed_line`."""
     chosen = line_task(robot) if task is None else task
-    tau = row_times(1.0, steps, None)
+    bounded = bool(np.isfinite([timing.limits.velocity, timing.limits.acceleration]).any())
+    # Of few rows none may be where a joint is fastest.
+    looked_at = max(steps, LOOKED_AT) if bounded else steps
+    tau = row_times(1.0, looked_at, None)
     path = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
     path = timed_line(path, curve, timing.profile, timing.limits, timing.duration, chosen)
-    if timing.rate is None:
+    if timing.rate is None and looked_at == steps:
         return path
     assert path.duration is not None
     tau = row_times(path.duration, steps, timing.rate) / path.duration
@@ -183,8 +189,12 @@ def timed_line(
     with np.errstate(invalid="ignore", over="ignore"):
         speed = q1 * s1[:, None]
         push = q2 * s1[:, None] ** 2 + q1 * s2[:, None]
-    if not (np.all(np.isfinite(speed)) and np.all(np.isfinite(push))):
-        raise InputError("a joint's velocity has no bound where the path is singular, expected a path beside that")
+    if len(tau) == 1 and not path.complete:
+        speed, push = np.zeros_like(path.q), np.zeros_like(path.q)  # it does not begin
+    unbounded = ~np.all(np.isfinite(speed) & np.isfinite(push), axis=1)
+    if unbounded.any():
+        singular = f"where the path is singular, at {path.s[int(np.argmax(unbounded))]:.6g} of it"
+        raise InputError(f"a joint's velocity has no bound {singular}, expected a path beside that")
     if len(tau) > 2 and (spare := _spare(path, task)) is not None:
         # A joint is to spare: what it does from row to row the line does not say, and is read off the rows.
         speed = speed + np.einsum("mij,mj->mi", spare, np.gradient(path.q, tau, axis=0, edge_order=2))

@@ -284,6 +284,23 @@ def test_three_places_on_a_line_are_no_arc(via):
         CircularArc(np.eye(4), np.array(via), robokin.transform("Trans(1, 1, 0)"))
 
 
+@pytest.mark.parametrize("steps", [1, 2, 7])
+def test_limits_of_a_line_do_not_depend_on_how_few_rows_are_asked_for(steps):
+    goals = [Goal(T=robokin.transform("Trans(-0.9, 0.1, 0)"))]
+    timing = Timing(motion_limits(PLANAR, 1.0, None))
+    start, manner = np.array([0.5, 0.7]), Manner("line", timing=timing)
+    few, many = (path_through(PLANAR, start, goals, k, manner) for k in (steps, 100))
+    assert few.complete and len(few) == steps + 1 and few.duration == pytest.approx(many.duration, rel=1e-9)
+
+
+def test_a_line_that_does_not_begin_stands_still():
+    finger = robokin.load("allegro-index")
+    goals = [Goal(T=robokin.transform("Trans(0.02, 0.03, 0.12)"))]
+    timing = Timing(motion_limits(finger, None, None), duration=1.0)
+    path = path_through(finger, np.radians([0, 10, 20, 30]), goals, 20, Manner("line", timing=timing))
+    assert not path.complete and len(path) == 1 and not path.velocity.any()
+
+
 def test_a_singular_line_has_no_duration_within_limits():
     """A stretched arm cannot begin to move inwards at a finite velocity of its elbow."""
     timing = Timing(motion_limits(PLANAR, 1.0, 1.0), "cubic")
