@@ -127,6 +127,9 @@ def unknown_name(name: str) -> InputError:
     close, titled = nearest(name, library_names()), titled_with(name)
     if titled and not any(_letters(near).startswith(_letters(name)) for near in close):
         close = []  # a maker's name is no slip of another one's arm
+    beside = f"{name}.yaml"
+    if name and os.path.isfile(beside):  # noqa: PTH113 - as above
+        close = [shown(beside), *close]
     said = [f"did you mean {or_list(close)}?"] if close else []
     if titled := [other for other in titled if other not in close]:
         listed = ", ".join(titled[:MOST_TITLED]) + (", …" if len(titled) > MOST_TITLED else "")

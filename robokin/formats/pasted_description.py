@@ -29,6 +29,9 @@ ASSIGNED = re.compile(
 
 
 PLACED = re.compile(r"\b((?:base|tool): (?:Trans|Rot|RPY|Rx|Ry|Rz)\([\w ,.()*/+-]{0,400}\))")
+HAND = {"m": "0.1", "cm": "10", "mm": "100", "in": "4"}
+"""The length of the hand that waits in a comment, by the unit of length."""
+
 MAX_LINE = 2000
 """Characters of a line beside a table that are looked at."""
 
@@ -112,7 +115,7 @@ def described_table(text: str, wishes: Wishes) -> PastedRobot:
             *(["parameters:", *parameters] if names else []),
             "joints:",
             *lines,
-            *(_placed(beside) or ["# tool: Trans(0, 0, 100)   # from the last frame to the end effector"]),
+            *(_placed(beside) or [f"# tool: Trans(0, 0, {HAND[length]})   # from the last frame to the end effector"]),
             "# poses: {home: [" + ", ".join("0" for row in draft.rows if row.kind != "F") + "]}",
         ]
     )

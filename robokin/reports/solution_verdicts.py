@@ -51,8 +51,13 @@ def _cut_from(result: Result, turns: bool) -> int:
 
 
 def _listed(result: Result) -> str:
-    """`2 solutions and 1 self-motion`: a solution that stands for a self-motion is counted as that."""
+    """`2 solutions and 1 self-motion`: a solution that stands for a self-motion is counted as that.
+
+    Where all self-motions are known, all solutions are on them: `16 solutions of 8 self-motions`.
+    """
     moving = [family for family in result.families if moves_within(family)]
+    if result.families_complete and not result.complete and moving and len(moving) == len(result.families):
+        return f"{counted(len(result.solutions), 'solution')} of {counted(len(moving), 'self-motion')}"
     standing = {number for family in moving if (number := solution_number(family, result))}
     alone = len(result.solutions) - len(standing)
     parts = [counted(alone, "solution")] if alone or not standing else []

@@ -171,6 +171,14 @@ def test_a_result_without_a_certificate_reads_as_before():
     assert verdict(regular(complete=True)).replace("\xa0", " ") == "8 solutions, these are all (spherical wrist)"
 
 
+@pytest.mark.parametrize(("most", "listed"), [(None, "16 solutions"), (1, "1 solution")])
+def test_solutions_that_are_all_on_known_self_motions_are_said_to_be_of_them(most, listed):
+    arm = robokin.load("iiwa14")
+    result = robokin.solve_ik(arm, robokin.transform("Trans(0.5, 0.1, 0.6) RPY(0, pi, 0)"), most=most)
+    assert result.families_complete and len(result.families) == 8
+    assert verdict(result).startswith(f"{listed} of 8 self-motions, every self-motion within the limits is given: ")
+
+
 def test_a_solution_that_stands_for_a_self_motion_is_counted_as_that():
     said = verdict(straight(arc(STRAIGHT, TURNED)))
     assert said.startswith("2 solutions and 1 self-motion, these are all: 8 paths from two starts ended")

@@ -177,6 +177,13 @@ def test_a_wrong_name_gets_names_that_are_near_or_of_its_maker(name, said):
     assert said in str(caught.value)
 
 
+def test_a_file_without_its_ending_is_meant(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "arm1.yaml").write_text(arm())
+    with pytest.raises(InputError, match=r"named 'arm1' in the library; did you mean arm1\.yaml"):
+        load_any("arm1")
+
+
 def test_a_wrong_path_is_explained(tmp_path):
     (tmp_path / "my-arm.yaml").write_text(arm())
     for name, said in {"my_arm.yaml": "did you mean", "PUMA560.yaml": "written without an ending: puma560"}.items():

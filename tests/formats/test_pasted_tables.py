@@ -330,3 +330,9 @@ def test_a_damaged_table_ends_in_a_sentence_or_in_a_description(seed):
             read_text(made.text)
     except InputError:
         pass
+
+
+@pytest.mark.parametrize(("unit", "hand"), [("m", "0.1"), ("cm", "10"), ("mm", "100"), ("in", "4")])
+def test_the_hand_that_waits_is_of_a_size_in_its_unit(unit, hand):
+    made = described_table("theta d a alpha\nq1 0 1 0\n", Wishes(length=unit, angle="deg"))
+    assert f"# tool: Trans(0, 0, {hand})  " in made.text

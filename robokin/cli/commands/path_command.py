@@ -38,7 +38,9 @@ def command(
         option("--to", "Q", "Where it goes: joint values, a named pose, or a transform; repeatable.", named_poses),
     ] = None,
     target: TargetOptions,
-    steps: Annotated[str | None, option("--steps", "N", "Steps, of each piece of a line; a row more is written.  [default: 100]")] = None,
+    steps: Annotated[
+        str | None, option("--steps", "N", "Steps, of each piece of a line; a row more is written.  [default: 100]")
+    ] = None,
     joint: Annotated[
         bool, typer.Option("--joint", help="All joints together, each from its value to the other; the default.")
     ] = False,
