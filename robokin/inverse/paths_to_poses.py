@@ -68,12 +68,14 @@ def path_through(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, 
     paths = _pieces(robot, start, goals, steps, manner)
     # What is not reached counts as a part of the way.
     paths_left = len(goals) - len(paths)
-    whole = joined(paths)
+    whole = joined(paths, manner.timing.rate if manner.timing is not None else None)
     if not paths_left:
         return whole
     share = len(paths) / len(goals)
     events = tuple(replace(event, fraction=event.fraction * share) for event in whole.events)
-    return replace(whole, s=whole.s * share, fraction=whole.fraction * share, events=events)
+    asked = manner.timing.duration if manner.timing is not None else None
+    duration = whole.duration if asked is None else asked
+    return replace(whole, s=whole.s * share, fraction=whole.fraction * share, events=events, duration=duration)
 
 
 def _pieces(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> list[Path]:
@@ -99,8 +101,11 @@ def _followed(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, man
     """The tool to each goal in its manner, as far as it gets."""
     paths: list[Path] = []
     for goal, manner in zip(goals, manners, strict=False):
-        path = _by_tool(robot, paths[-1].q[-1] if paths else start, goal, steps, manner)
-        paths.append(path)
+        timing = manner.timing
+        if timing is not None:
+            since = sum(path.duration or 1.0 for path in paths)
+            manner = replace(manner, timing=replace(timing, since=since))
+        paths.append(path := _by_tool(robot, paths[-1].q[-1] if paths else start, goal, steps, manner))
         if not path.complete:
             break
     return paths

@@ -107,7 +107,7 @@ def trajectory(
 
 @dataclass(frozen=True, eq=False)
 class Timing:
-    """How a path takes its time: see `trajectory`."""
+    """How a path takes its time: see `trajectory`. A rate's rows are counted from `since` [s] before its start."""
 
     limits: MotionLimits
     profile: Profile = "quintic"
@@ -115,6 +115,7 @@ class Timing:
     passing: Passing = "stop"
     blend: float = BLEND
     rate: float | None = None
+    since: float = 0.0
 
 
 def timed_curve(
@@ -132,18 +133,28 @@ def timed_curve(
         return path
     assert path.duration is not None
     tau = row_times(path.duration, steps, timing.rate) / path.duration
+    if timing.rate is not None and timing.since:
+        whole = row_times(timing.since + path.duration, steps, timing.rate) - timing.since
+        tau = np.append(0.0, whole[whole > path.duration * 1e-9] / path.duration)
     tau[-1] = 1.0
     again = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
     free = motion_limits(robot, None, None)
     return timed_line(again, curve, timing.profile, free, path.duration, chosen)
 
 
-def joined(paths: Sequence[Path]) -> Path:
-    """Paths one after the other as one, each the same part of the way; the last need not be followed to its end."""
+def joined(paths: Sequence[Path], rate: float | None = None) -> Path:
+    """Paths one after the other as one, each the same part of the way; the last need not be followed to its end.
+
+    rate: the rows' [1/s]; the end of a path that is at none of its times is no row then, but for the last one's.
+    """
     if len(paths) == 1:
         return paths[0]
     times, parts, events, start = [], [], [], 0.0
+    ends: list[int | None] = []
     for k, path in enumerate(paths):
+        count = rate * (start + (path.duration or 1.0)) if rate is not None else 0.0
+        off = k + 1 < len(paths) and abs(count - round(count)) > 1e-9 * max(1.0, count)
+        ends.append(-1 if off else None)
         times.append(start + path.t)
         parts.append((k + path.s) / len(paths))
         events += [replace(event, fraction=(k + event.fraction) / len(paths)) for event in path.events]
@@ -153,7 +164,7 @@ def joined(paths: Sequence[Path]) -> Path:
 
     def rows(values: Iterable[Array | None]) -> Array:
         """The rows of all paths, each without its first, which is the last one's end."""
-        return np.concatenate([np.asarray(one)[1 if k else 0 :] for k, one in enumerate(values)])
+        return np.concatenate([np.asarray(one)[1 if k else 0 : ends[k]] for k, one in enumerate(values)])
 
     return replace(
         last,
@@ -164,7 +175,7 @@ def joined(paths: Sequence[Path]) -> Path:
         fraction=(len(paths) - 1 + last.fraction) / len(paths),
         events=tuple(events),
         manipulability=rows(path.manipulability for path in paths),
-        steps=sum(path.steps for path in paths),
+        steps=sum(path.steps for path in paths) - sum(end is not None for end in ends),
         duration=start if timed else None,
         velocity=rows(path.velocity for path in paths) if timed else None,
         acceleration=rows(path.acceleration for path in paths) if timed else None,

@@ -4,6 +4,7 @@ passed."""
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from robokin.inverse.paths_to_poses import Goal, Manner, path_through
 from robokin.inverse.time_profiles import MotionLimits, timed_move
 from robokin.inverse.timed_curves import TimedCurve
 from robokin.inverse.tool_curves import CircularArc
-from robokin.inverse.trajectories import Timing, joined, motion_limits, trajectory, unit_law
+from robokin.inverse.trajectories import Timing, joined, motion_limits, row_times, trajectory, unit_law
 
 FREE = MotionLimits(np.full(3, np.inf), np.full(3, np.inf))
 PROFILES = ("cubic", "quintic", "trapezoidal")
@@ -237,6 +238,20 @@ def test_a_duration_is_of_the_whole_line(rate):
         path_through(PLANAR, start, goals, 50, Manner("line", timing=Timing(bounds, duration=0.99 * least.duration)))
 
 
+@pytest.mark.parametrize(("duration", "rate"), [(4.0, 10.0), (4.0, 7.3), (None, 31.0), (2.0, 0.1), (2.0, 100.0)])
+def test_rows_of_a_rate_are_even_past_the_points_between(duration, rate):
+    goals = [Goal(np.array(q)) for q in ([0.8, 0.7], [1.3, 0.4], [1.2, 0.9])]
+    timing = Timing(motion_limits(PLANAR, 0.5 if duration is None else None, None), duration=duration, rate=rate)
+    path = path_through(PLANAR, np.array([0.5, 0.9]), goals, 50, Manner("line", timing=timing))
+    np.testing.assert_allclose(path.t, row_times(path.duration, 1, rate), atol=1e-9)
+    assert path.complete and path.steps == len(path) - 1
+    fine = replace(timing, rate=None)
+    whole = path_through(PLANAR, np.array([0.5, 0.9]), goals, 2000, Manner("line", timing=fine))
+    for k in range(2):
+        between = np.interp(path.t, whole.t, whole.q[:, k])
+        np.testing.assert_allclose(path.q[:, k], between, atol=1e-5 if duration is not None else 1e-3)
+
+
 @pytest.mark.parametrize("end", [None, [0.35, 0.7, 0.17, -1.22, 0.35, 0.87, 0.52]])
 def test_joints_to_spare_come_to_rest_with_the_tool(end):
     arm = robokin.load("iiwa14")
@@ -256,6 +271,8 @@ def test_a_line_that_ends_before_its_points():
     path = path_through(PLANAR, np.array([0.5, 0.9]), goals, 40, Manner("line", timing=timing))
     assert not path.complete and 1 / 3 < path.fraction < 2 / 3
     assert path.events[-1].fraction == pytest.approx(path.fraction)
+    timed = path_through(PLANAR, np.array([0.5, 0.9]), goals, 40, Manner("line", timing=replace(timing, duration=6.0)))
+    assert timed.duration == 6.0 and 2.0 < timed.t[-1] < 4.0 and timed.fraction == pytest.approx(path.fraction)
 
 
 def test_an_arc_is_on_its_circle():
