@@ -19,7 +19,7 @@ from robokin.units import Units
 
 RECORD_KEYS = (
     "schema", "robot", "id", "units", "target", "hold", "reachable", "complete", "basis", "certificate", "counts",
-    "families", "families_complete", "method", "reason", "solutions", "nearest", "explanation",
+    "families", "families_complete", "method", "reason", "solutions", "nearest", "explanation", "jump",
 )  # fmt: skip
 """What a document says itself."""
 

@@ -125,6 +125,7 @@ def ik() -> Schema:
         {
             "hold": mapping(number("The joint's value [joint]."), "Joints that are held (--hold), by q and number."),
             "explanation": EXPLANATION,
+            "jump": flag("Whether a joint moves by more than --max-jump from the answer before (--near previous)."),
         },
     )  # fmt: skip
     about = "Solutions of the inverse kinematics, a document a target, or one for targets of several tips."

@@ -23,6 +23,7 @@ from robokin.tables.written_rows import csv_header, csv_records
 from robokin.units import Units
 
 if TYPE_CHECKING:
+    from robokin.inverse.answers_in_turn import Following
     from robokin.records.worked_step_records import Explanation
 
 
@@ -30,10 +31,11 @@ TURNED_ROWS = 10_000
 """Full turns of so many postures are held at a time: with eight postures a target some 50 MB of rows."""
 
 
-def csv_columns(robot: Robot) -> list[str]:
-    """The columns of a CSV."""
+def csv_columns(robot: Robot, following: bool = False) -> list[str]:
+    """The columns of a CSV; following: of answers that each follow the one before."""
     names = [f"q{i}" for i in range(1, robot.n + 1)]
-    return ["target", "solution", *names, "branch", "within_limits", "position_error", "angle_error", "reason"]
+    columns = ["target", "solution", *names, "branch", "within_limits", "position_error", "angle_error", "reason"]
+    return [*columns, "jump"] if following else columns
 
 
 @dataclass
@@ -55,6 +57,8 @@ class SolutionReport(SharedStream):
     begun: bool = False
     """Whether what stands above all answers is written."""
     cores: int | None = 1
+    following: Following | None = None
+    """Where each target is answered by the solution nearest to the answer before it: what that was."""
 
     @property
     def robot(self) -> Robot:
@@ -96,6 +100,9 @@ class SolutionReport(SharedStream):
 
     def batches(self, blocks: Iterable[Array]) -> Iterator[tuple[Array, BatchResult]]:
         """Each block (m, 4, 4) [m] with its answers."""
+        if self.following is not None:
+            yield from self.following.batches(self.robot, blocks, self.arguments)
+            return
         step = TURNED_ROWS // turns_of_limits(self.robot) + 1 if self.arguments.get("turns") else None
         for block in blocks:
             for start in range(0, len(block), step or max(len(block), 1)):
@@ -119,6 +126,8 @@ class SolutionReport(SharedStream):
         """The document of each answer, as it comes."""
         for target, result in self.results(blocks):
             record = self.records.record(target, result)
+            if self.following is not None:
+                record["jump"] = self.following.jumped
             if self.explain:
                 record["explanation"] = self.explanation(target, result).record()
             yield [self.carried.in_front_of(record)]
@@ -133,7 +142,7 @@ class SolutionReport(SharedStream):
 
     def csv(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """A row a solution. Works on arrays: most of the time of a batch would else go into objects."""
-        header = b"" if self.begun else csv_header(csv_columns(self.robot))
+        header = b"" if self.begun else csv_header(csv_columns(self.robot, self.following is not None))
         for T, batch in self.batches(blocks):
             listed = np.arange(batch.q.shape[1]) < batch.count[:, None]
             solutions = zip(
@@ -153,6 +162,8 @@ class SolutionReport(SharedStream):
                     rows.append([self.count, k, *q, _one_cell(branch), *rest, ""])
                 if not count:
                     rows += self.exceptional(T[i], batch, i)
+                if self.following is not None:
+                    rows[len(through) :] = [[*row, self.following.jumped] for row in rows[len(through) :]]
                 through += [self.carried.cells()] * (len(rows) - len(through))
             yield self.carried.before(header, csv_records(None, rows), through)
             header = b""
@@ -209,7 +220,8 @@ class SolutionReport(SharedStream):
         drawn = AnswerTable(self.records, limits, turns, self.arguments.get("most"))
         head = b"" if self.begun else drawn.head()
         for target, result in self.results(blocks):
-            yield head + drawn.paragraph("" if self.alone else f"target {self.count}: ", result)
+            jump = " (a jump)" if self.following is not None and self.following.jumped else ""
+            yield head + drawn.paragraph("" if self.alone else f"target {self.count}{jump}: ", result)
             head = b""
             if self.explain:
                 from robokin.reports.worked_step_pages import WorkedStepPage

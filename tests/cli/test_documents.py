@@ -228,6 +228,7 @@ ELSEWHERE = {
     ("fk", None): ORIENTATIONS,
     ("show", None): {"joint", "ratio", "beside"},  # of couplings, which test_trees and test_couplings have
     ("convert", None): {"joint", "ratio", "beside"},
+    ("ik", None): {"jump"},  # of files, which test_ik_near_previous has
     ("plot", None): ORIENTATIONS | {"euler"},
     ("workspace", None): {*ORIENTATIONS, "euler", "rpy", "quaternion", "matrix", "pose", "q", "holds", "length_error"},
     ("check", "fk"): {"student", "students", "line", "approach", "matrix", "task", "relative"},

@@ -18,6 +18,7 @@ from robokin.errors import InputError, counted
 
 if TYPE_CHECKING:
     from robokin.arrays import Array
+    from robokin.inverse.answers_in_turn import Following
     from robokin.units import Units
 
 
@@ -55,9 +56,13 @@ def command(
             "--near",
             "Q",
             "Order by the greatest joint move from these values or this named pose; of a self-motion the "
-            "nearest member is listed.",
+            "nearest member is listed. Of a file also previous: each target by the solution nearest to the last one's.",
             named_poses,
         ),
+    ] = None,
+    max_jump: Annotated[
+        str | None,
+        option("--max-jump", "A", "With --near previous: a greater move of a joint is a jump.  [default: 30°]"),
     ] = None,
     method: Annotated[
         str | None, option("--method", "METHOD", "auto, analytic or numeric.  [default: auto]", words(*METHODS))
@@ -171,13 +176,18 @@ def command(
     if held:
         note_held_units(held, model, units)
         arguments["hold"] = {joint: value * factors[joint] for joint, value in held.items()}
-    if near is not None:
+    folder = output.file if output.folder else None
+    alone = {"--max": max_, "--turns": turns or None, "--cluster": scale.cluster, "--output": folder}
+    following = _following(near, max_jump, input, units, alone)
+    if following is not None:
+        used = 1
+    elif near is not None:
         arguments["near"] = typed_configurations([near], model, units, "--near")[0] * factors
     tolerances = (
         _tolerance(tol_position, "--tol-position", units, angle=False),
         _tolerance(tol_angle, "--tol-angle", units, angle=True),
     )
-    taken = csv_columns(model) if kind in TABLES else RECORD_KEYS
+    taken = csv_columns(model, following is not None) if kind in TABLES else RECORD_KEYS
     carried = Carried(taken, say, wanted=not drop and kind not in ("table", "npy"))
     if input is None:
         asked = parse_target(target.texts, model, units)
@@ -200,6 +210,7 @@ def command(
 
     records = SolutionRecords(model, units, arguments["task"], held)
     answers = SolutionReport(records, tolerances, arguments, input is None, explain, carried, cores=used)
+    answers.following = following
     if long:
         from robokin.cli.part_answers import send_answers
 
@@ -211,7 +222,34 @@ def command(
     if not answers.alone and answers.unreached:
         verb = "has" if answers.unreached == 1 else "have"
         say(f"{answers.unreached} of {counted(answers.count, 'target')} {verb} no solution")
+    if following is not None and following.jumps:
+        say(f"{counted(following.jumps, 'jump')}: a joint moves by more than {_shown_jump(following.jump, units)}")
     return NO if answers.unreached else DONE
+
+
+def _following(
+    near: str | None, max_jump: str | None, input: str | None, units: Units, others: dict[str, Any]
+) -> Following | None:
+    """What --near previous asks for; None where it does not. Raises InputError."""
+    from robokin.inverse.answers_in_turn import Following
+
+    if near != "previous":
+        if max_jump is not None:
+            raise InputError("--max-jump goes with --near previous, expected both")
+        return None
+    if input is None:
+        raise InputError("--near previous is for targets of a file, expected --input with it")
+    for name, value in others.items():
+        if value is not None:
+            raise InputError(f"{name}: --near previous gives one solution after the other, expected it alone")
+    jump = _tolerance(max_jump, "--max-jump", units, angle=True)
+    return Following() if jump is None else Following(jump)
+
+
+def _shown_jump(jump: float, units: Units) -> str:
+    from robokin.number_text import show
+
+    return f"{show(jump / units.radians)} {units.angle}"
 
 
 def _check_explain(kind: str, input: str | None, method: str | None, hold: list[str] | None) -> None:
