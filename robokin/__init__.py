@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from robokin.formats import load_wheeled as load_wheeled
     from robokin.formats.library import library_names as library_names
     from robokin.formats.pose_expressions import transform as transform
+    from robokin.formats.robot_of_table import from_table as from_table
     from robokin.grading.marks import check_configuration as check_configuration
     from robokin.grading.marks import check_pose as check_pose
     from robokin.grading.marks import check_solutions as check_solutions
@@ -74,6 +75,7 @@ _MODULES = ("documents", "notebook")
 _HOMES = {
     "Units": "robokin.units",
     "load": "robokin.formats",
+    "from_table": "robokin.formats.robot_of_table",
     "load_mechanism": "robokin.formats",
     "load_tree": "robokin.formats",
     "load_wheeled": "robokin.formats",

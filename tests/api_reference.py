@@ -18,7 +18,9 @@ import robokin
 PAGE = Path(__file__).parent.parent / "docs" / "api.md"
 
 GROUPS = {
-    "Descriptions": ("load", "load_tree", "load_mechanism", "load_wheeled", "library_names", "transform", "Units"),
+    "Descriptions": (
+        "load", "from_table", "load_tree", "load_mechanism", "load_wheeled", "library_names", "transform", "Units",
+    ),
     "Models": ("Robot", "Tree", "Mechanism", "WheeledBase", "to_convention"),
     "Kinematics": (
         "forward_kinematics", "tip_poses", "link_frames", "jacobian", "differential_kinematics",

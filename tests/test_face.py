@@ -325,6 +325,11 @@ RIGHT = {
     "Units": {"length": "mm", "angle": "deg"},
     "Tolerance": {"position": 1e-3, "angle": 1e-3, "relative": 0.0, "size": 1.0},
     "Robot.within_limits": {"self": PUMA, "q": Q},
+    "from_table": {
+        "table": [[0, 1, 0, 1.57], [0, 0, 1, 0]], "types": "RP", "convention": "standard", "length": "m",
+        "angle": "rad",
+        "name": "arm", "values": None,
+    },
     "notebook.matrix": {"values": np.eye(3)},
     "notebook.html_of": {"value": PUMA},
     "library_names": {},

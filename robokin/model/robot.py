@@ -17,6 +17,7 @@ from robokin.brief import Brief, Described
 from robokin.errors import InputError, Note, shown
 from robokin.expected import expect_kind, expect_numbers
 from robokin.model.graph import NO_LIMITS, Graph, GraphJoint, Tip
+from robokin.model.robot_methods import RobotMethods
 from robokin.spatial import exact, invert, translation_transform, z_to
 from robokin.spatial.dh import modified_dh, standard_dh
 from robokin.units import Units
@@ -109,7 +110,7 @@ class Joint(Brief):
 
 
 @dataclass(frozen=True, eq=False)
-class Robot(Described):
+class Robot(RobotMethods, Described):
     """A serial chain: T = base · row 1 · … · row m · tool, as the description gives it.
 
     `rows` are all rows of the table, `joints` those with a variable, in the order of q. `texts` are the

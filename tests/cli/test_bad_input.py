@@ -29,7 +29,10 @@ USAGE = {
     "an option of no command": (["--jsn"], ["no option '--jsn'"]),
     "nothing after an option": ([*FK, "--q"], ["--q has nothing after it", "expected"]),
     "a flag with a value": ([*HOME, "--json=1"], ["--json has a value", "expected"]),
-    "an unknown format": ([*HOME, "-f", "jsn"], ["--format", "'jsn'", "table, json, jsonl or csv", "'json'"]),
+    "an unknown format": (
+        [*HOME, "-f", "jsn"],
+        ["--format", "'jsn'", "table, json, jsonl, csv, parquet or arrow", "'json'"],
+    ),
     "npy on standard output": ([*HOME, "-f", "npy"], ["--format", "'npy'", "expected"]),
     "two formats": ([*HOME, "--json", "-f", "csv"], ["exclude each other", "expected one of them"]),
     "an unknown angle unit": ([*HOME, "--angle", "degree"], ["--angle", "'degree'", "rad or deg", "mean 'deg'"]),
@@ -236,7 +239,7 @@ def test_any_words_get_an_answer(words):
 
 
 SECOND_VALUES = [
-    ("path", "puma560", "--from", "home", "--to", "home", "--to", "0,0,0,0,0,0"),
+    ("path", "puma560", "--to", "home", "--from", "home", "--from", "0,0,0,0,0,0"),
     ("fk", "puma560", "--q", "home", "--angle", "deg", "--angle=rad"),
     ("fk", "puma560", "--q", "home", "-f", "csv", "--format", "json"),
     ("fk", "puma560", "--q", "home", "-fcsv", "-fjson"),

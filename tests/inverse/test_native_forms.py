@@ -159,22 +159,22 @@ def test_all_instructions_give_the_same_digits(rng):
 def test_mirrored_and_far_and_turned_targets_are_left_to_others(rng):
     arm = one_target_arm(entry("puma560"))
     T = robokin.forward_kinematics(arm.robot, np.full(6, 0.4))
-    assert native.solution(arm.kernel, T, True, None) is not None
+    assert native.solution(arm.kernel, T, True, None, None) is not None
     changes = {(0, 0): 0.5, (1, 2): np.nan, (3, 0): 1e-3, (2, 3): np.inf, (0, 3): 9.0}
     for place, value in changes.items():
         wrong = T.copy()
         wrong[place] = value
-        assert native.solution(arm.kernel, wrong, True, None) is None
+        assert native.solution(arm.kernel, wrong, True, None, None) is None
         if not np.isfinite(value) or place == (0, 3):
             assert native.solutions(arm.kernel, np.stack([wrong, T]), True, None)[0].tolist() == [False, True]
     assert not native.rigid(-T)
     assert native.rigid(np.stack([T, T])[None])
     assert not native.rigid(np.eye(3))
     for other in (T.tolist(), T.astype(np.float32), T[:3], T[None], T.astype(">f8"), T.view(np.matrix), None, "T"):
-        assert native.solution(arm.kernel, other, True, None) is None
+        assert native.solution(arm.kernel, other, True, None, None) is None
     turned = np.asfortranarray(T)
     np.testing.assert_array_equal(
-        native.solution(arm.kernel, turned, True, None)[0], native.solution(arm.kernel, T, True, None)[0]
+        native.solution(arm.kernel, turned, True, None, None)[0], native.solution(arm.kernel, T, True, None, None)[0]
     )
 
 
@@ -206,6 +206,8 @@ def interpreted(tape, rows, roots):
 def test_a_tape_says_what_its_source_says(rng):
     for robot, arm in list(known_arms(rng, 4))[::3]:
         source = straight_source(arm.analysis.solver)
+        if source is None:
+            continue  # an arm by elimination
         tape, form = form_tape(source), compiled_form(source)
         for T in robokin.forward_kinematics(robot, rng.uniform(-3.0, 3.0, (3, 6))):
             rows = arm.loop.closing(T[None])[0, :3].ravel()
@@ -267,7 +269,7 @@ def test_hostile_signs_are_refused():
     with pytest.raises((TypeError, ValueError)):
         native.sides(known, [0.0] * 6)
     with pytest.raises(ValueError):
-        native.solution(known, np.eye(4), True, None)
+        native.solution(known, np.eye(4), True, None, None)
     wrong = [
         (known, 1.0, none, zero, first), (chain, 0.0, none, zero, first), (chain, np.nan, none, zero, first),
         (chain, 1.0, np.zeros((1, 8)), zero, first), (chain, 1.0, none, np.zeros(600), first),
@@ -311,8 +313,8 @@ def test_hostile_forms_are_refused(rng):
             continue
         T = robokin.forward_kinematics(entry("puma560"), rng.uniform(-3.0, 3.0, (9, 6)))
         native.solutions(form, T, True, None)
-        native.solution(form, T[0], True, None)
-    for count in (0, 1, 3, 5):
+        native.solution(form, T[0], True, None, None)
+    for count in (0, 1, 3, 6):
         with pytest.raises(TypeError):
             native.solution(*[native.form(*good)] * count)
         with pytest.raises(TypeError):
@@ -320,13 +322,13 @@ def test_hostile_forms_are_refused(rng):
     form, T = native.form(*good), np.eye(4)
     for wish in ([0.0] * 6, np.zeros(5), "wish", 3):
         with pytest.raises((TypeError, ValueError)):
-            native.solution(form, T, True, wish)
+            native.solution(form, T, True, wish, None)
     with pytest.raises(ValueError, match="targets"):
         native.solutions(form, np.zeros((2, 4, 5)), True, None)
     with pytest.raises((TypeError, ValueError)):
         native.solutions(form, T, True, None)
     with pytest.raises(ValueError):
-        native.solution(good[0], T, True, None)
+        native.solution(good[0], T, True, None, None)
     assert [len(part) for part in native.solutions(form, np.zeros((0, 4, 4)), True, None)] == [0] * 7
 
 

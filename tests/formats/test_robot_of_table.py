@@ -1,0 +1,68 @@
+"""Robots made of tables in Python, and what a robot answers by itself."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import robokin
+
+UR5 = [[0, 0.089159, 0, np.pi / 2], [0, 0, -0.425, 0], [0, 0, -0.39225, 0], [0, 0.10915, 0, np.pi / 2],
+       [0, 0.09465, 0, -np.pi / 2], [0, 0.0823, 0, 0]]  # fmt: skip
+"""Universal Robots, support article "DH parameters for calculations of kinematics and dynamics"."""
+Q = np.random.default_rng(0).uniform(-3, 3, (5, 6))
+
+
+def test_a_table_of_numbers_is_the_robot():
+    made, library = robokin.from_table(UR5), robokin.load("ur5")
+    np.testing.assert_allclose(made.fk(Q), library.fk(Q), atol=1e-12)
+    scaled = np.array(UR5) * [180 / np.pi, 1000, 1000, 180 / np.pi]
+    np.testing.assert_allclose(robokin.from_table(scaled, length="mm", angle="deg").fk(Q), library.fk(Q), atol=1e-12)
+    shifted = np.array(UR5)
+    shifted[:, 0] = 0.3
+    np.testing.assert_allclose(robokin.from_table(shifted).fk(Q), library.fk(Q + 0.3), atol=1e-12)
+
+
+def test_slides_and_craigs_convention():
+    made = robokin.from_table([[0, 0.1, 0, 0], [0.2, 0, 0, -np.pi / 2]], types="RP", convention="modified", name="a b")
+    assert (made.types, made.convention, made.name) == ("RP", "modified", "a b")
+    np.testing.assert_allclose(made.fk([0, 0.5])[:3, 3], [0, 0.5, 0.1], atol=1e-12)
+
+
+def test_a_text_is_read_as_it_is_pasted():
+    text = "i  θ  d  a  α\n1  q1  L1  0  90°\n2  q2  0  300  0"
+    with pytest.raises(robokin.InputError, match="no value for L1"):
+        robokin.from_table(text)
+    made = robokin.Robot.from_dh(text, values={"L1": 400})
+    assert made.fk([0, 0])[:3, 3] == pytest.approx([0.3, 0, 0.4])
+
+
+def test_methods_are_the_functions():
+    robot = robokin.load("puma560")
+    q = robot.poses["home"]
+    T = robot.fk(q)
+    np.testing.assert_array_equal(T, robokin.forward_kinematics(robot, q))
+    np.testing.assert_array_equal(robot.jacobian(q, "tool"), robokin.jacobian(robot, q, "tool"))
+    assert [one.branch for one in robot.ik(T, limits=False)] == [
+        one.branch for one in robokin.solve_ik(robot, T, limits=False)
+    ]
+    assert robot.plot(q).kind == "html" and robot.plot(q, kind="text").kind == "text"
+    hand = robokin.load("human-hand", tip="index")
+    assert hand.fk(np.zeros(hand.n)).shape == (4, 4)
+
+
+def test_a_description_is_read_again(tmp_path):
+    robot = robokin.from_table(UR5)
+    (tmp_path / "ur.yaml").write_text(robot.to_yaml())
+    np.testing.assert_allclose(robokin.load(tmp_path / "ur.yaml").fk(Q), robot.fk(Q), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("table", "options"),
+    [([1, 2], {}), ([[1, 2, 3]], {}), ([[0, 0, 0, np.nan]], {}), ([], {}), ("hello", {}), (UR5, {"types": "RR"}),
+     (UR5, {"types": 3}), (UR5, {"convention": "craig"}), (UR5, {"length": "km"}), (UR5, {"values": {"L1": 1.0}}),
+     (UR5, {"values": 3}), (UR5, {"name": 3}), (None, {})],
+)  # fmt: skip
+def test_what_is_no_table_is_told(table, options):
+    with pytest.raises(robokin.InputError):
+        robokin.from_table(table, **options)
