@@ -13,7 +13,7 @@ in the forearm follows from the transpose. The turns of a triple need the third 
 only: ten numbers that are each A cos ψ + B sin ψ + C.
 Degenerate case. Of a straight elbow, which is a double root, there is one set of curves; ψ then counts from where the
 elbow bends. With W on axis 1 it counts from the base's x axis. With W in S there is no line, and where a middle turn
-comes to zero its neighbours turn about one axis: `doubt` says so.
+comes to zero its neighbours turn about one axis: there, and next to it, `doubt` says so.
 """
 
 from __future__ import annotations
@@ -28,24 +28,30 @@ from robokin.kernel.frames import frames
 
 TURN = 2.0 * np.pi
 
-NO_LINE = 1e-6
-"""A distance from S to W, as a part of the size, below which W is in S."""
+NO_LINE = 1e-3
+"""A distance from S to W, as a part of the size, below which W is next to S: a pose's error of 1e-9, what solutions may
+have, turns the arm by 1e-6 there."""
 
 ON_LINE = 1e-9
 """The same of the elbow from the line: where ψ is zero is then known to 1e-7, which is no more than a name."""
 
-STRAIGHT = 1e-13
-"""How near to 1 the cosine of an elbow is for its two values to be one: they are 1e-6 apart then, as far as `SAME`."""
+OFF_LINE = 1e-4
+"""Where W is on axis 1, or the elbow on the line, by less than `ON_LINE`, another direction says where ψ is zero; from
+here on theirs does. Between the two ψ has no name that would be the same for a pose next to it."""
 
-BENT = 1e-8
-"""How far from 1 it must be otherwise: beyond, less is an error that a pose may have; below, the joints beside an elbow
-that is bent by less than 1e-4 are known to few digits."""
+STRAIGHT = 1e-14
+"""How near to 1 the cosine of an elbow is for its two values to be one: some times the rounding of a pose. They are
+1.4e-7 from straight then, and configurations 10 times that off at most, by `FIRM`."""
 
-ON_AXIS = 1e-9
-"""Sine of the angle to axis 1 from which on that direction says where ψ is zero."""
+BENT = 5e-7
+"""How far from 1 it must be otherwise, 1e-3 rad: an error of 1e-9 that a pose may have moves joints by 1e-6 there."""
 
-ALIGNED = 1e-8
-"""How near to 1 the cosine of a middle turn may come: the turn is then 1e-4, and its neighbours known to 1e-11."""
+ALIGNED = 5e-7
+"""How near to 1 the cosine of a middle turn may come, 1e-3 rad: the same of its neighbours."""
+
+FIRM = 0.1
+"""With a straight elbow, which may be 1.4e-7 from straight, the least sine of a middle turn and the least distance from
+S to W as a part of the size: joints are known to 1e-5 then, and to 1e-3 with what an error of the pose adds."""
 
 SIGNS = np.array([1.0, -1.0])
 """Of the first and of the second value of an elbow or of a middle turn."""
@@ -57,8 +63,9 @@ class SwivelCurves:
 
     q4: (m, 2) the elbows [rad], offset included; real: (m, 2) which of them there are; entries: (m, 2, 2, 5, 3) for
     each elbow and triple the factors of 1, cos ψ and sin ψ in the entries 13, 23, 33, 31, 32 of its matrix; doubt: (m,)
-    where an elbow is nearly straight, or hardly has a ψ, or a middle turn comes near zero; axes: (m, 3, 3) the columns
-    p̂, r̂, n̂ in the base, from which ψ counts; bend: (m, 2, 3) ê in the frame after joint 3, by which it does.
+    where an elbow is nearly straight, or hardly has a ψ, or a middle turn comes near zero; straight: (m,) where the
+    elbow is taken for straight; axes: (m, 3, 3) the columns p̂, r̂, n̂ in the base, from which ψ counts; bend: (m, 2, 3)
+    ê in the frame after joint 3, by which it does.
     """
 
     arm: SwivelArm
@@ -66,6 +73,7 @@ class SwivelCurves:
     real: Flags
     entries: Array
     doubt: Flags
+    straight: Flags
     axes: Array
     bend: Array
 
@@ -77,6 +85,7 @@ class SwivelCurves:
             self.real[some],
             self.entries[some],
             self.doubt[some],
+            self.straight[some],
             self.axes[some],
             self.bend[some],
         )
@@ -119,10 +128,11 @@ def swivel_curves(arm: SwivelArm, T: Array) -> SwivelCurves:
     base = constants[0]
     p = (T[:, :3, :3] @ arm.wrist + T[:, :3, 3] - base[:3, 3]) @ base[:3, :3] - arm.shoulder
     hand = base[:3, :3].T @ T[:, :3, :3] @ arm.hand
-    q4, real, doubt = _elbows(arm, p)
-    v_axes = _upper_axes(arm, q4)
+    q4, real, straight, doubt = _elbows(arm, p)
+    v_axes, unnamed = _upper_axes(arm, q4)
     p_axes, no_line = _base_axes(p, arm.size)
-    doubt |= no_line
+    doubt |= no_line | np.any(unnamed & real, axis=1)
+    doubt |= straight & (np.linalg.norm(p, axis=1) < FIRM * arm.size)
     # The forearm's frame before its turn sees ê, f̂, v̂; the base sees the hand's columns along r̂, n̂, p̂.
     Rz = _about_z(q4)
     forearm = constants[3][:3, :3] @ Rz @ constants[4][:3, :3]
@@ -134,12 +144,14 @@ def swivel_curves(arm: SwivelArm, T: Array) -> SwivelCurves:
     entries[:, :, 0, 3:] = _swung(v_axes, p_axes[:, None, 2], -1.0)[..., :2, :]
     entries[:, :, 1, :3] = _swung(seen, along[:, None, :, 2], -1.0)
     entries[:, :, 1, 3:] = _swung(np.swapaxes(along, 1, 2)[:, None], seen[:, :, 2])[..., :2, :]
-    doubt |= np.any(_aligned(arm, entries) & real, axis=1)
-    return SwivelCurves(arm, q4, real, entries, doubt, p_axes, v_axes[..., 1])
+    straightest = np.where(straight, 1.0 - np.sqrt(1.0 - FIRM**2), ALIGNED)
+    doubt |= np.any((_alignment(arm, entries) < straightest[:, None]) & real, axis=1)
+    return SwivelCurves(arm, q4, real, entries, doubt, straight, p_axes, v_axes[..., 1])
 
 
-def _elbows(arm: SwivelArm, p: Array) -> tuple[Array, Flags, Flags]:
-    """The values (m, 2) of joint 4, offset included, that W - S = p (m, 3) allows; whether there are; and doubt (m,).
+def _elbows(arm: SwivelArm, p: Array) -> tuple[Array, Flags, Flags, Flags]:
+    """The values (m, 2) of joint 4, offset included, that W - S = p (m, 3) allows; whether there are; whether they are
+    taken for one (m,); and doubt (m,).
 
     |W - S|² = |w|² + |s|² - 2 sᵀ Rz(q4) w, with W and S seen from both sides of the joint.
     """
@@ -152,36 +164,41 @@ def _elbows(arm: SwivelArm, p: Array) -> tuple[Array, Flags, Flags]:
     x = np.clip(np.where(straight, np.round(wave), wave), -1.0, 1.0)
     q4 = np.arctan2(sine, cosine) + np.arccos(x)[:, None] * SIGNS
     real = np.stack([straight | (beyond < 0.0), ~straight & (beyond < 0.0)], axis=1)
-    return q4, real, ~straight & (np.abs(beyond) < BENT)
+    return q4, real, straight, ~straight & (np.abs(beyond) < BENT)
 
 
-def _upper_axes(arm: SwivelArm, q4: Array) -> Array:
-    """The directions v̂, ê, f̂ as columns (m, 2, 3, 3) in the frame after joint 3."""
+def _upper_axes(arm: SwivelArm, q4: Array) -> tuple[Array, Flags]:
+    """The directions v̂, ê, f̂ as columns (m, 2, 3, 3) in the frame after joint 3; and (m, 2) where the elbow is next to
+    the line, but not on it."""
     C = arm.chain.constants[3]
     v = (_about_z(q4) @ arm.lower) @ C[:3, :3].T + C[:3, 3] - arm.upper
     towards = np.broadcast_to(arm.elbow, v.shape)
-    axes, on_line = _axes(v, towards, ON_LINE * arm.size)
-    return _axes(v, np.where(on_line[..., None], np.cross(C[:3, 2], v), towards), 0.0)[0] if on_line.any() else axes
+    axes, off = _axes(v, towards)
+    on_line = off < ON_LINE * arm.size
+    if on_line.any():
+        axes, _ = _axes(v, np.where(on_line[..., None], np.cross(C[:3, 2], v), towards))
+    return axes, ~on_line & (off < OFF_LINE * arm.size)
 
 
 def _base_axes(p: Array, size: float) -> tuple[Array, Flags]:
-    """The directions p̂, r̂, n̂ as columns (m, 3, 3) in the base, r̂ towards axis 1; where W is in S."""
-    length = np.linalg.norm(p, axis=1, keepdims=True)
-    beside = np.hypot(p[:, :1], p[:, 1:2]) >= ON_AXIS * length
-    towards = np.where(beside, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])
-    axes, _ = _axes(p, towards, 0.0)
-    return axes, length[:, 0] < NO_LINE * size
+    """The directions p̂, r̂, n̂ as columns (m, 3, 3) in the base, r̂ towards axis 1; where W is next to S, or to
+    axis 1 but not on it."""
+    length = np.linalg.norm(p, axis=1)
+    off = np.hypot(p[:, 0], p[:, 1])
+    beside = off >= ON_LINE * length
+    axes, _ = _axes(p, np.where(beside[:, None], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]))
+    return axes, (length < NO_LINE * size) | (beside & (off < OFF_LINE * length))
 
 
-def _axes(line: Array, towards: Array, least: float) -> tuple[Array, Flags]:
+def _axes(line: Array, towards: Array) -> tuple[Array, Array]:
     """Orthonormal directions (..., 3, 3) as columns, along the line, at right angles to that towards something, across;
-    and (...) whether that is nearer to the line than the least distance."""
+    and (...) how far that is from the line."""
     first = line / np.maximum(np.linalg.norm(line, axis=-1, keepdims=True), 1e-300)
     second = towards - np.sum(towards * first, axis=-1, keepdims=True) * first
     second -= np.sum(second * first, axis=-1, keepdims=True) * first  # what rounding left, of a nearly straight elbow
     length = np.linalg.norm(second, axis=-1, keepdims=True)
     second = second / np.maximum(length, 1e-300)
-    return np.stack([first, second, np.cross(first, second)], axis=-1), length[..., 0] < least
+    return np.stack([first, second, np.cross(first, second)], axis=-1), length[..., 0]
 
 
 def _swung(axes: Array, other: Array, sign: float = 1.0) -> Array:
@@ -195,13 +212,13 @@ def _swung(axes: Array, other: Array, sign: float = 1.0) -> Array:
     return np.stack([still, cosine, sine], axis=-1)
 
 
-def _aligned(arm: SwivelArm, entries: Array) -> Flags:
-    """(m, 2) whether the cosine of a middle turn touches ±1 at some ψ, or nearly so."""
+def _alignment(arm: SwivelArm, entries: Array) -> Array:
+    """(m, 2) how near the cosine of a middle turn comes to ±1 at some ψ; negative where it is beyond."""
     triples = arm.triples
     swing = np.hypot(entries[..., 2, 1], entries[..., 2, 2])
     middle = entries[..., 2, 0] - triples.k
     least = np.minimum(triples.r - (middle + swing), triples.r + (middle - swing)) / triples.r
-    return np.asarray(np.any(least < ALIGNED, axis=2))
+    return np.asarray(np.min(least, axis=2))
 
 
 def _about_z(angle: Array) -> Array:

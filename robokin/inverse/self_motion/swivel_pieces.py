@@ -10,8 +10,9 @@ So a joint meets each of its limits at two values of ψ at most, whatever the si
 values no joint meets a limit: the configurations midway say of each interval whether it is within the limits.
 A joint with limits a full turn apart is within them everywhere, and stops where it meets them.
 Degenerate case. Joints that meet their limits at one ψ may leave a single point within them, and a joint may touch its
-limit, which counts as within. Where a configuration is a trifle beyond a limit and both sides of it are alike, or a
-piece or the gap between two is so short that rounding may have made it, there is `doubt`.
+limit, which counts as within. Where a joint touches a limit and turns back, or keeps to one all along, or does either
+nearly so; where a configuration is a trifle beyond a limit and both sides of it are alike; where a piece or the gap
+between two is short: there is `doubt`, by a margin some thousand times the error of any configuration.
 """
 
 from __future__ import annotations
@@ -34,8 +35,15 @@ TOUCHES = 1e-9
 ALIKE = 1e-11
 """Values of ψ [rad] that are nearer are one."""
 
-VAGUE = 1e-8
-"""Pieces and gaps [rad] that are shorter, and margins [rad] that are less, may be rounding."""
+VAGUE = 1e-4
+"""Pieces and gaps [rad] that are shorter, and margins [rad] that are less, may come from a pose's error of 1e-9, which
+moves joints by 1e-6 at the margins of `swivel_curves`."""
+
+VAGUEST = 1e-3
+"""The same with a straight elbow, where it may move them by 1e-4 and more."""
+
+MEETS = 1e-8
+"""How near to its limits [rad] a joint meets these that has them a full turn apart."""
 
 WEIGHTS = np.array([8, 4, 2, 1])
 """What makes a pose and three signs one number."""
@@ -92,7 +100,7 @@ class SwivelBounds:
 
     matrix: (E, 10), value: (E,) of equations in the ten entries of the triples; middle, half: (2, 3, 1) of the triples'
     turns and (2,) of the elbow [rad], offsets included; half is infinite where limits keep no angle out; stops:
-    (2, 3, 1) and stopping: (E,) which joints and equations have limits a full turn apart.
+    (2, 3, 1) which joints have limits a full turn apart.
     """
 
     def __init__(self, arm: SwivelArm, limits: Array) -> None:
@@ -105,7 +113,7 @@ class SwivelBounds:
         self.stops = stops[TRIPLES][:, :, None]
         self.middle, self.half = middle[TRIPLES][:, :, None], half[TRIPLES][:, :, None]
         self.elbow = float(middle[3]), float(half[3])
-        rows, values, stopping = [], [], []
+        rows, values = [], []
         for t, joints in enumerate(TRIPLES):
             for place, joint in enumerate(joints):
                 ends = (low[joint], high[joint])[: 2 - int(stops[joint])]
@@ -114,8 +122,6 @@ class SwivelBounds:
                     row[t], value = _meeting_limit(arm, t, place, float(end))
                     rows.append(row.reshape(10))
                     values.append(value)
-                    stopping.append(bool(stops[joint]))
-        self.stopping = np.array(stopping, dtype=bool)
         self.matrix, self.value = np.array(rows).reshape(-1, 10), np.array(values)
 
 
@@ -134,7 +140,8 @@ def _meeting_limit(arm: SwivelArm, t: int, place: int, end: float) -> tuple[Arra
 
 def _pieces(curves: SwivelCurves, bounds: SwivelBounds) -> SwivelPieces:
     """The pieces of some poses, few enough for one table."""
-    psi, touched = _meetings(curves, bounds)
+    vague = np.where(curves.straight, VAGUEST, VAGUE)
+    psi, touched = _meetings(curves, bounds, vague)
     gap = np.diff(psi, axis=2, append=psi[:, :, :1] + TURN)
     margin, stopped = _margins(curves, bounds, np.concatenate([psi, psi + 0.5 * gap], axis=2))
     at, amid = np.split(margin, 2, axis=-1)
@@ -151,39 +158,42 @@ def _pieces(curves: SwivelCurves, bounds: SwivelBounds) -> SwivelPieces:
     before = np.roll(within, 1, axis=4)
     begins, ends = within & ~before, before & ~within
     all_round: Flags = np.all(within, axis=4)
-    doubt = curves.doubt | np.any(touched & elbow, axis=1) | np.any((room < -SURE) & (room > -VAGUE), axis=1)
+    doubt = curves.doubt | np.any(touched & elbow, axis=1) | np.any((room < -SURE) & (room > -vague[:, None]), axis=1)
     apart, there = ~short[:, :, None, None], elbow[:, :, None, None, None]
     if stopped is not None:
         stop = stopped & within & before & apart
         begins, ends = begins | stop, ends | stop
         all_round &= ~stop.any(axis=4)
-    doubt |= np.any((amid < -SURE) & (amid > -VAGUE) & apart & there, axis=(1, 2, 3, 4))
+    least = -vague[:, None, None, None, None]
+    doubt |= np.any((amid < -SURE) & (amid > least) & apart & there, axis=(1, 2, 3, 4))
     # On a limit is within it, also in a single point; a little beyond may be rounding.
-    alike = (within == before) & apart & there & (at >= -VAGUE)
+    alike = (within == before) & apart & there & (at >= least)
     doubt |= np.any(alike & (at < -SURE), axis=(1, 2, 3, 4))
     points = np.argwhere(alike & ~within & (at >= -SURE))
     row, signs, first, last, whole = _runs(psi, begins, ends, all_round, points)
     # Where a joint stops the next piece begins where one ends; any other gap this short may be rounding.
     length, gaps = last - first, first[1:] - last[:-1]
     left_out = TURN - length
-    short_piece = (length < VAGUE) & (length > 0.0)
-    doubt[row[short_piece | (~whole & (left_out < VAGUE) & (left_out > ALIKE))]] = True
+    # Of a straight elbow no single point is certain.
+    short_piece = (length < vague[row]) & ((length > 0.0) | curves.straight[row])
+    doubt[row[short_piece | (~whole & (left_out < vague[row]) & (left_out > ALIKE))]] = True
     same = (np.diff(row) == 0) & np.all(np.diff(signs, axis=0) == 0, axis=1)
-    doubt[row[1:][same & (gaps < VAGUE) & (gaps != 0.0)]] = True
+    doubt[row[1:][same & (gaps < vague[row[1:]]) & (gaps != 0.0)]] = True
     return SwivelPieces(row, signs, first, last, whole, doubt)
 
 
-def _meetings(curves: SwivelCurves, bounds: SwivelBounds) -> tuple[Array, Flags]:
+def _meetings(curves: SwivelCurves, bounds: SwivelBounds, vague: Array) -> tuple[Array, Flags]:
     """(m, 2, K) in order the values of ψ in [-π, π] at which a joint may be at a limit; -π in place of missing ones.
 
-    With (m, 2) whether a joint with limits a full turn apart may touch these.
+    With (m, 2) whether a joint touches one and turns back, or keeps to it, to within vague (m,) [rad].
     """
     m, many = len(curves.q4), len(bounds.value)
     if not many:
         return np.full((m, 2, 1), -np.pi), np.zeros((m, 2), dtype=bool)
     still, cosine, sine = np.moveaxis(bounds.matrix @ curves.entries.reshape(m, 2, 10, 3), 3, 0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        x = (bounds.value - still) / np.hypot(cosine, sine)
+        swing, off = np.hypot(cosine, sine), bounds.value - still
+        x = off / swing
         exists = np.abs(x) <= 1.0 + TOUCHES
         side = np.arccos(np.clip(x, -1.0, 1.0))
     amid = np.arctan2(sine, cosine)
@@ -191,9 +201,7 @@ def _meetings(curves: SwivelCurves, bounds: SwivelBounds) -> tuple[Array, Flags]
     psi -= TURN * np.round(psi / TURN)
     psi = np.where(np.concatenate([exists, exists], axis=2), psi, -np.pi)
     psi.sort(axis=2)
-    if not bounds.stopping.any():
-        return psi, np.zeros((m, 2), dtype=bool)
-    return psi, np.any(exists & bounds.stopping & (np.sin(side) < VAGUE), axis=2)
+    return psi, np.any(np.abs(np.abs(off) - swing) < vague[:, None, None], axis=2)
 
 
 def _margins(curves: SwivelCurves, bounds: SwivelBounds, psi: Array) -> tuple[Array, Flags | None]:
@@ -210,7 +218,7 @@ def _margins(curves: SwivelCurves, bounds: SwivelBounds, psi: Array) -> tuple[Ar
     margin = np.minimum(margin[:, :, 0, :, None], margin[:, :, 1, None])
     if not bounds.stops.any():
         return margin, None
-    meets = np.any((away[..., : psi.shape[2] // 2] >= np.pi - VAGUE) & bounds.stops[:, None], axis=-2)
+    meets = np.any((away[..., : psi.shape[2] // 2] >= np.pi - MEETS) & bounds.stops[:, None], axis=-2)
     return margin, meets[:, :, 0, :, None] | meets[:, :, 1, None]
 
 
