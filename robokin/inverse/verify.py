@@ -6,6 +6,7 @@ index of the target in the block that it is for.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -145,7 +146,8 @@ def distinct(found: Found, revolute: Flags, size: float) -> Found:
     """One configuration of each set of equal ones, angles in [-π, π], by target and then by q1, q2, … .
 
     Of equal ones that with the least residual stays. The order is by q1 to q4 as rounded to a few
-    hundredths of a degree (one number holds the four), so that no last digit decides.
+    hundredths of a degree (one number holds the four), and then by a weighted sum of all joints, so that no last digit
+    decides.
     """
     return distinct_and_close(found, revolute, size)[0]
 
@@ -196,7 +198,7 @@ def distinct_and_close(found: Found, revolute: Flags, size: float) -> tuple[Foun
         key *= cells
         key += np.round(part, out=part)
     first = np.cumsum(counts) - counts
-    places = first[:, None] + np.argsort(table(key), axis=1, kind="stable")
+    places = first[:, None] + _ranked(table(key), lambda: table(weights @ scaled))
     order = by_target[places.reshape(-1) if full else places[filled]]
     arranged = Found(found.index, q, found.position, found.angle).pick(order)
     if not alike.any():
@@ -212,6 +214,20 @@ OFF_CENTRE = 0.31
 
 KEY_CELLS = (2.0**14, 2.0**13, 2.0**13, 2.0**13)
 """Parts that the ranges of q1 … q4 are cut into for the order; their product is a whole number below 2⁵³."""
+
+
+def _ranked(keys: Array, sums: Callable[[], Array]) -> Index:
+    """The columns of a table of keys in rising order, row by row; of equal keys the sums decide, a table as well.
+
+    Next to a singular pose two solutions may be in one cell, and come in any order.
+    """
+    order: Index = np.argsort(keys, axis=1, kind="stable")
+    arranged = np.take_along_axis(keys, order, axis=1)
+    # What fills a row up is infinite, and no two of it are told apart.
+    tied = np.flatnonzero(np.any((arranged[:, 1:] == arranged[:, :-1]) & (arranged[:, 1:] < np.inf), axis=1))
+    if len(tied):
+        order[tied] = np.lexsort((sums()[tied], keys[tied]), axis=1)
+    return order
 
 
 def _first_of_equals(found: Found, revolute: Flags, size: float) -> Flags:

@@ -38,8 +38,10 @@ def fact(find: Callable[[Owner, *Rest], Found]) -> Callable[[Owner, *Rest], Foun
             pass
         else:
             return found
-        found = facts_of(owner)[find, rest] = find(owner, *rest)
-        return found
+        found = find(owner, *rest)
+        # Threads that find it out at the same time all go on with one: facts that rest on each other fit together.
+        kept: Found = facts_of(owner).setdefault((find, rest), found)
+        return kept
 
     return known
 

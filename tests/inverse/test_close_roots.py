@@ -22,7 +22,7 @@ from robokin.inverse.elimination.homotopy import Homotopy
 from robokin.inverse.elimination.loop import loop_of
 from robokin.inverse.elimination.monodromy import two_starts
 from robokin.inverse.self_motion.tangent_cone import null_spaces
-from robokin.inverse.verify import Found, nothing
+from robokin.inverse.verify import Found, distinct, nothing
 from robokin.kernel.chain import chain_of, chain_size
 from robokin.kernel.residual import error_and_jacobian
 from robokin.model import Joint, JointType, Robot
@@ -406,3 +406,17 @@ def test_what_has_not_settled_counts_for_nothing(rng):
     for result in robokin.solve_ik(robot, T):
         assert not result.complete
         assert any(np.max(np.abs(solution.q - q)) < 1e-4 for solution in result.solutions)
+
+
+def test_solutions_that_nearly_meet_come_in_one_order_whatever_order_they_are_found_in(rng):
+    """Their first four joints are the same to a few hundredths of a degree."""
+    robot = robokin.load("ur7e")
+    q = np.radians([201.283, 261.887, 165.849, 354.990, 67.443, -153.293])
+    near = q + 6e-6 * rng.normal(size=(7, 6))
+    index, off = np.repeat([0, 1], [7, 4]), np.zeros(11)
+    all_q = np.concatenate([near, near[:3], near[:1] + 1.0])  # the second target has fewer, and one elsewhere
+    expected = distinct(Found(index, all_q, off, off), robot.revolute, 1.0)
+    assert len(expected) == 11
+    for _ in range(5):
+        shuffled = Found(index, all_q, off, off).pick(rng.permutation(11))
+        assert np.array_equal(distinct(shuffled, robot.revolute, 1.0).q, expected.q)

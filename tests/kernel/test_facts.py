@@ -5,13 +5,14 @@ from __future__ import annotations
 import copy
 import gc
 import pickle
+import threading
 import weakref
 from dataclasses import replace
 
 import robokin
 from robokin.inverse.analysis import analysis_of
 from robokin.kernel.chain import chain_of, chain_size
-from robokin.kernel.facts import NAME, facts_of
+from robokin.kernel.facts import NAME, fact, facts_of
 from robokin.workspace.extremes import extent
 from robokin.workspace.space import space_of
 
@@ -57,3 +58,22 @@ def test_facts_do_not_show():
     analysis_of(robot)
     chain_size(chain_of(robot))
     assert (repr(robot), repr(chain_of(robot))) == before
+
+
+def test_threads_that_find_a_fact_out_at_once_get_the_same_object():
+    """An arm that one thread prepared for the kernel is of the analysis that the robot keeps, and not of a twin."""
+    together = threading.Barrier(4, timeout=30)
+
+    @fact
+    def found_together(robot):
+        together.wait()
+        return [robot.n]
+
+    robot, got = replace(robokin.load("puma560")), []
+    threads = [threading.Thread(target=lambda: got.append(found_together(robot))) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(got) == 4
+    assert all(one is found_together(robot) for one in got)
