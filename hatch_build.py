@@ -71,8 +71,10 @@ class KernelHook(BuildHookInterface[Any]):
         except (ImportError, OSError, ValueError, subprocess.SubprocessError) as error:
             self.work.cleanup()
             if version == "editable":
-                # What an earlier build left is not that of these sources.
-                (root / KERNEL).unlink(missing_ok=True)
+                # What an earlier build left stays only where it is that of these sources.
+                kept = root / KERNEL
+                if kept.is_file() and digest(root / "robokin/kernel/native").encode() not in kept.read_bytes():
+                    kept.unlink()
             if os.environ.get("ROBOKIN_REQUIRE_KERNEL") == "1":
                 print(getattr(error, "stdout", None) or "", getattr(error, "stderr", None) or "", file=sys.stderr)
                 raise

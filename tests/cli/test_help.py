@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import subprocess
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -131,4 +132,7 @@ def test_what_is_offered_is_accepted(call, option):
     assert len(offered) >= 2
     for word in offered:
         answer = call(command, robot, *more, option, word)
+        if word in ("parquet", "arrow") and find_spec("pyarrow") is None:
+            assert "pip install 'robokin[parquet]'" in answer.err
+            continue
         assert answer.status == 0, answer.err
