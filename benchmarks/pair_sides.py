@@ -17,6 +17,7 @@ import site
 import subprocess
 import sys
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from itertools import chain
 from pathlib import Path
@@ -42,7 +43,7 @@ def taken(action: Callable[[], object]) -> float:
     return float(best)
 
 
-class Side:
+class Side(ABC):
     """What is measured: questions by name, `one` of them a call for each row, `batch` one call for all."""
 
     package = ""
@@ -55,9 +56,9 @@ class Side:
         """Which one this is."""
         return importlib.metadata.version(self.package)
 
+    @abstractmethod
     def arm(self, name: str) -> Any:
         """The arm of a name as this side knows it; `rows` are what is asked about."""
-        raise NotImplementedError
 
     def rows(self, name: str) -> Any:
         return np.load(self.folder / f"{name}.npz")

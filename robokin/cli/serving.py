@@ -119,7 +119,7 @@ def _front(question: AskedLine) -> dict[str, Any]:
 def _stamp(path: str) -> tuple[int, ...]:
     """What changes with a file; nothing for one that is not there."""
     try:
-        known = os.stat(path)  # noqa: PTH116 - it is asked with every question
+        known = os.stat(path)  # noqa: PTH116 - with every question: a Path takes as long again
     except OSError:
         return ()
     return known.st_mtime_ns, known.st_ctime_ns, known.st_size, known.st_ino

@@ -128,7 +128,7 @@ def unknown_name(name: str) -> InputError:
     if titled and not any(_letters(near).startswith(_letters(name)) for near in close):
         close = []  # a maker's name is no slip of another one's arm
     beside = f"{name}.yaml"
-    if name and os.path.isfile(beside):  # noqa: PTH113 - as above
+    if name and os.path.isfile(beside):  # noqa: PTH113 - no name raises, too long or with a null
         close = [shown(beside), *close]
     said = [f"did you mean {or_list(close)}?"] if close else []
     if titled := [other for other in titled if other not in close]:

@@ -32,17 +32,6 @@ ROUNDING = 5e-15
 """Of joint values [rad], times the least singular value there."""
 
 
-@pytest.fixture(params=["base", "avx2"])
-def instructions(request):
-    before = native.instructions()
-    try:
-        native.instructions(request.param)
-    except ValueError:
-        pytest.skip("this machine does not have them")
-    yield request.param
-    native.instructions(before)
-
-
 def known_arms(rng, random=12):
     """The library's arms that the kernel knows, and some random ones."""
     six = [entry(name) for name in names_of(Robot, least=6, most=6)]

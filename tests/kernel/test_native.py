@@ -28,17 +28,6 @@ ROUNDING = 4e-15
 """Of entries, as a part of the chain's greatest number: a product of some ten matrices."""
 
 
-@pytest.fixture(params=["base", "avx2"])
-def instructions(request):
-    before = native.instructions()
-    try:
-        native.instructions(request.param)
-    except ValueError:
-        pytest.skip("this machine does not have them")
-    yield request.param
-    native.instructions(before)
-
-
 def both_ways(robot, q, rng):
     """The greatest differences, by what was asked, as parts of the greatest number of each."""
     chain = chain_of(robot)
