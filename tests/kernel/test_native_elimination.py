@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from kernel.test_native import instructions as instructions
 from library_entries import entry
 
 import robokin
