@@ -192,8 +192,8 @@ class CountMarkOptions(DeliveryOptions):
     set_: SetOption = None
 
 
-class MarkOptions(DescriptionOptions, DeliveryOptions, RuleOptions):
-    """How answers about a robot are marked, and where the marks go."""
+class MarkRuleOptions(RuleOptions):
+    """What holds for all marks. Raises InputError for what is wrong with it before any work is done."""
 
     def __init__(self, **typed: Any) -> None:
         super().__init__(**typed)
@@ -211,6 +211,10 @@ class MarkOptions(DescriptionOptions, DeliveryOptions, RuleOptions):
         from robokin.grading.marking import Rules
 
         return Rules(BUDGET if self.seconds is None else self.seconds, self.least, self.most_cores)
+
+
+class MarkOptions(DescriptionOptions, DeliveryOptions, MarkRuleOptions):
+    """How answers about a robot are marked, and where the marks go."""
 
     def subject(
         self, kind: type[Kind], name: str, allowed: TableToleranceOptions, *, table: bool = False, **more: Any

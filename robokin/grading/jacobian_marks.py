@@ -128,6 +128,6 @@ class JacobianCheck(Subject):
                 return Mistake(mistake.name, said if meant.length == units.length else f"{said}; and in {meant.length}")
         if right(-J, given):
             return Mistake(SIGN, "right with the sign of each entry reversed")
-        if len(rows) == self.robot.n and right(J.T, given / scale):
+        if len(rows) == self.robot.n and right(J, (given / scale).T * scale):
             return Mistake(TRANSPOSED, "this is the transposed matrix, expected a column for each joint")
         return None

@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -92,6 +92,17 @@ class AnswerTask:
         return Item(self.id, status, score, words=words, student=self.student, **{"line": self.line, **more})
 
 
+class Marker(Protocol):
+    """What marks answers; `unsaid` is what an item has beside the keys of all where there is nothing to say."""
+
+    @property
+    def unsaid(self) -> Mapping[str, Any]:
+        """The keys of an item that could not be decided."""
+
+    def mark(self, task: AnswerTask) -> Sequence[Item]:
+        """The items of an answer. Raises InputError for one that cannot be read, if it is a slip of the teacher's."""
+
+
 @dataclass(frozen=True, eq=False)
 class Subject:
     """What answers are about: a robot, the units in which errors are said, and how far answers may be off."""
@@ -149,7 +160,7 @@ class Rules:
         return replace(item, score=max(item.score, self.partial))
 
 
-def marked(subject: Subject, tasks: Sequence[AnswerTask], rules: Rules) -> Iterator[Item]:
+def marked(subject: Marker, tasks: Sequence[AnswerTask], rules: Rules) -> Iterator[Item]:
     """The items of each task, in order. An answer that takes too much is not decided, and the others go on.
 
     Raises InputError for an answer that its check refuses to mark.

@@ -13,7 +13,7 @@ from robokin.errors import DescriptionError, InputError, or_list
 from robokin.grading.differences import Difference, difference_of
 from robokin.grading.feedback import Words, joined
 from robokin.grading.mark_items import NO_ROBOT, UNREADABLE, Item
-from robokin.grading.marking import AnswerTask, Subject
+from robokin.grading.marking import AnswerTask, NoAnswerError, Subject
 from robokin.grading.pose_difference import PASS
 from robokin.grading.same_robot import OPEN, Comparison, compare_tables
 from robokin.grading.table_mistakes import table_mistake
@@ -45,6 +45,8 @@ class TableCheck(Subject):
         """The mark of a table. Raises InputError for one that cannot be read if it is the only one."""
         try:
             given = task.answers[0].read()
+        except NoAnswerError as wrong:
+            return (self.none(task, wrong.status, Words(own=wrong.detail)),)
         except InputError as error:
             if self.alone:
                 raise

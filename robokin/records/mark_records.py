@@ -46,7 +46,8 @@ def _told(name: str, value: Any, level: str) -> Any:
 
 def report_head(report: Report) -> dict[str, Any]:
     """What is said of all items, without them."""
-    return envelope("robot", report.robot, report.units) | {"check": report.check, "tolerance": report.tolerance}
+    key = "sheet" if report.check == "sheet" else "robot"
+    return envelope(key, report.robot, report.units) | {"check": report.check, "tolerance": report.tolerance}
 
 
 def report_record(report: Report, level: str = ANSWER) -> dict[str, Any]:
@@ -65,13 +66,22 @@ def _sums(report: Report) -> dict[str, Any]:
 def report_rows(report: Report, level: str = ANSWER) -> tuple[list[str], list[list[Any]]]:
     """The headings and the rows of a CSV, one an item, with the errors in columns of their own."""
     errors, students = error_names(report), any(item.student is not None for item in report.items)
+    sheet = ["kind", "about"] if report.check == "sheet" else []
     rows = []
     for item in report.items:
         told = item.errors(level)
-        cells = [item.id, *([item.student] if students else []), item.said_status(level), item.score]
+        cells = [item.id, *([item.student] if students else []), *(item.more[name] for name in sheet)]
+        cells += [item.said_status(level), item.score]
         cells += [told.get(name) for name in errors]
         rows.append(["" if cell is None else cell for cell in [*cells, item.detail(level)]])
-    headings = ["id", *(["student"] if students else []), "status", "score", *(f"{name}_error" for name in errors)]
+    headings = [
+        "id",
+        *(["student"] if students else []),
+        *sheet,
+        "status",
+        "score",
+        *(f"{name}_error" for name in errors),
+    ]
     return [*headings, "detail"], rows
 
 
@@ -91,6 +101,13 @@ def summary(report: Report) -> str:
     return said + (f", {report.undecided} not decided" if report.undecided else "")
 
 
+def _test_name(item: Item, report: Report) -> str:
+    """What an autograder's test is called; of a sheet each is about something else."""
+    if report.check == "sheet":
+        return f"{item.id}: {item.more['kind']} {item.more['about']}"
+    return item_name(item)
+
+
 def autograder_record(report: Report, points: float | None, visibility: str | None, level: str) -> dict[str, Any]:
     """The results that autograders read: a test an item, its score a part of what the item is worth.
 
@@ -102,7 +119,7 @@ def autograder_record(report: Report, points: float | None, visibility: str | No
     for item in report.counted:
         said = item.detail(level)
         test: dict[str, Any] = {
-            "name": item_name(item),
+            "name": _test_name(item, report),
             "score": item.score * worth,
             "max_score": worth,
             "status": "passed" if item.passed else "failed",

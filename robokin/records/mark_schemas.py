@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from robokin.records import sheet_schemas
 from robokin.records.pose_schemas import POSITION, RPY
 from robokin.records.schema_words import (
     Q,
@@ -173,5 +174,8 @@ def _dof() -> Schema:
     )
 
 
-CHECKS: dict[str, Callable[[], Schema]] = {"fk": _fk, "ik": _ik, "dh": _dh, "jacobian": _jacobian, "dof": _dof}
+CHECKS: dict[str, Callable[[], Schema]] = {
+    "fk": _fk, "ik": _ik, "dh": _dh, "jacobian": _jacobian, "dof": _dof, "new": sheet_schemas.new,
+    "sheet": sheet_schemas.sheet, "statistics": sheet_schemas.statistics,
+}  # fmt: skip
 """The schemas by what is checked."""

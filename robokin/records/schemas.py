@@ -27,8 +27,8 @@ HOMES = {
 }
 """Where each schema is made: only the one that is asked for is loaded."""
 
-CHECKS = ("fk", "ik", "dh", "jacobian", "dof")
-"""What `robokin check` marks: each has a schema of its own."""
+CHECKS = ("fk", "ik", "dh", "jacobian", "dof", "new", "sheet", "statistics")
+"""What stands behind `robokin check`: each has a schema of its own."""
 
 
 def document_schema(command: str, check: str | None = None) -> Schema:

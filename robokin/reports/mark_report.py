@@ -29,7 +29,13 @@ def written(report: Report, kind: str, level: str = ANSWER) -> bytes:
     if kind == "jsonl":
         head = report_head(report)
         return b"".join(json_line(head | item_record(item, level)) for item in report.items)
-    return csv_records(*report_rows(report, level)) if kind == "csv" else _page(report, level)
+    if kind == "csv":
+        return csv_records(*report_rows(report, level))
+    if report.check == "sheet":
+        from robokin.reports.sheet_report import sheet_page
+
+        return sheet_page(report, level)
+    return _page(report, level)
 
 
 def _page(report: Report, level: str) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from html import escape
 from typing import Any
 
 from robokin.number_text import show, show_range
@@ -59,15 +60,15 @@ def _motions_in_short(record: dict[str, Any]) -> list[str]:
 
 def markdown_table(record: dict[str, Any]) -> bytes:
     """A robot's table in Markdown, numbers to six decimals."""
-    return _joined([_printable(_about(record)), "", *_markdown_lines(record)])
+    return _joined([printable(_about(record)), "", *_markdown_lines(record)])
 
 
 def markdown_branches(name: str, branches: list[dict[str, Any]], tips: list[dict[str, Any]]) -> bytes:
     """The tables of a tree's branches in Markdown, one below the other, and the tips."""
-    lines = [_printable(_of_branches(name, branches))]
+    lines = [printable(_of_branches(name, branches))]
     for record in branches:
-        lines += ["", _printable(_about_branch(record)), "", *_markdown_lines(record)]
-    return _joined([*lines, "", *(f"- {_printable(text)}" for text in _tips_in_short(tips, branches))])
+        lines += ["", printable(_about_branch(record)), "", *_markdown_lines(record)]
+    return _joined([*lines, "", *(f"- {printable(text)}" for text in _tips_in_short(tips, branches))])
 
 
 def _joined(lines: list[str]) -> bytes:
@@ -79,26 +80,26 @@ def _markdown_lines(record: dict[str, Any]) -> list[str]:
     modified = record["convention"] == "modified"
     titles = [_named(name, modified, "{} i-1") for name in CELLS[record["convention"]]]
     lines = [["i", "joint", "type", *titles, "limits"]]
-    lines += [[_printable(one).replace("\\", "\\\\").replace("|", r"\|") for one in row] for row in _cells_of(record)]
+    lines += [[printable(one).replace("\\", "\\\\").replace("|", r"\|") for one in row] for row in _cells_of(record)]
     left = [True, True, True, *[record["convention"] == "frames"] * len(titles), True]
     rule = [":--" if one else "--:" for one in left]
     text = [f"| {' | '.join(line)} |" for line in [lines[0], rule, *lines[1:]]]
     for end in [*ends_in_short(record), *_motions_in_short(record)]:
-        text += ["", _printable(end)]
+        text += ["", printable(end)]
     return text
 
 
 def latex_table(record: dict[str, Any]) -> bytes:
     """A robot's table in LaTeX, as the package booktabs draws it, numbers to six decimals."""
-    return _joined([f"% {_printable(_about(record))}", r"% \usepackage{booktabs}", *_latex_lines(record)])
+    return _joined([f"% {printable(_about(record))}", r"% \usepackage{booktabs}", *_latex_lines(record)])
 
 
 def latex_branches(name: str, branches: list[dict[str, Any]], tips: list[dict[str, Any]]) -> bytes:
     """The tables of a tree's branches in LaTeX, one below the other, and the tips."""
-    lines = [f"% {_printable(_of_branches(name, branches))}", r"% \usepackage{booktabs}"]
+    lines = [f"% {printable(_of_branches(name, branches))}", r"% \usepackage{booktabs}"]
     for record in branches:
-        lines += ["", f"% {_printable(_about_branch(record))}", *_latex_lines(record)]
-    return _joined([*lines, "", *(f"% {_printable(text)}" for text in _tips_in_short(tips, branches))])
+        lines += ["", f"% {printable(_about_branch(record))}", *_latex_lines(record)]
+    return _joined([*lines, "", *(f"% {printable(text)}" for text in _tips_in_short(tips, branches))])
 
 
 def _latex_lines(record: dict[str, Any]) -> list[str]:
@@ -115,13 +116,31 @@ def _latex_lines(record: dict[str, Any]) -> list[str]:
     ]
     for row in _cells_of(record):
         number, name, kind, *cells, limits = row
-        cells = [_escaped(cell) if frames else _math(cell) for cell in cells]
-        lines.append(" & ".join([number, _escaped(name), kind, *cells, _math(limits)]) + r" \\")
+        cells = [latex_escaped(cell) if frames else _math(cell) for cell in cells]
+        lines.append(" & ".join([number, latex_escaped(name), kind, *cells, _math(limits)]) + r" \\")
     ends = [*ends_in_short(record), *_motions_in_short(record)]
     if ends:
         lines.append(r"\midrule")
-        lines += [rf"\multicolumn{{{len(columns)}}}{{l}}{{{_escaped(end)}}} \\" for end in ends]
+        lines += [rf"\multicolumn{{{len(columns)}}}{{l}}{{{latex_escaped(end)}}} \\" for end in ends]
     return [*lines, r"\bottomrule", r"\end{tabular}"]
+
+
+def html_table(record: dict[str, Any]) -> str:
+    """A robot's table in HTML, numbers to six decimals."""
+    modified = record["convention"] == "modified"
+    titles = [
+        "i",
+        "joint",
+        "type",
+        *(_named(name, modified, "{} i-1") for name in CELLS[record["convention"]]),
+        "limits",
+    ]
+    head = "".join(f"<th>{title}</th>" for title in titles)
+    lines = ["".join(f"<td>{escape(printable(cell))}</td>" for cell in row) for row in _cells_of(record)]
+    ends = "".join(f"<p>{escape(printable(end))}</p>" for end in [*ends_in_short(record), *_motions_in_short(record)])
+    units = f"<p>lengths in {record['units']['length']}, angles in {record['units']['angle']}</p>"
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
+    return f"{units}<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{ends}"
 
 
 def csv_branches(branches: list[dict[str, Any]]) -> bytes:
@@ -189,10 +208,11 @@ def _math(text: str) -> str:
     return f"${text}$"
 
 
-def _printable(text: str) -> str:
-    return "".join(letter if letter.isprintable() else " " for letter in text)
+def printable(text: str) -> str:
+    """A text without what steers a terminal or ends a line."""
+    return text if text.isprintable() else "".join(letter if letter.isprintable() else " " for letter in text)
 
 
-def _escaped(text: str) -> str:
+def latex_escaped(text: str) -> str:
     """A text as LaTeX reads it."""
-    return "".join(SPECIAL.get(letter, letter) for letter in _printable(text))
+    return "".join(SPECIAL.get(letter, letter) for letter in printable(text))

@@ -443,7 +443,7 @@ def test_results_for_an_autograder(call, tmp_path):
 
 
 SLIPS = {
-    "no kind": (["check"], ["KIND is missing", "fk, ik, dh, jacobian or dof"]),
+    "no kind": (["check"], ["KIND is missing", "fk, ik, dh, jacobian, dof, new, sheet or statistics"]),
     "a kind that is none": (["check", "fkk"], ["no check 'fkk'", "did you mean 'fk'"]),
     "a robot for a kind": (["check", "puma560"], ["no check 'puma560'", "expected fk"]),
     "no answer": (PUMA, ["--expect is missing"]),

@@ -14,6 +14,9 @@ CHECKS = {
     "dh": "Tables: is it the same robot, and where does it differ?",
     "jacobian": "A 6×n matrix, entry by entry.",
     "dof": "A count of freedoms, and the true mobility.",
+    "new": "A sheet of questions with other numbers for each student, and its key.",
+    "sheet": "The answers of a class to such a sheet.",
+    "statistics": "Of a class's marks: how hard each question was, which mistakes.",
 }
 """What can be checked; each has its module `robokin.cli.commands.check_<name>`."""
 

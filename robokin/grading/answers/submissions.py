@@ -63,8 +63,8 @@ def submissions(places: Sequence[str], follow: bool) -> list[Submission]:
     found: list[Submission] = []
     single: dict[int, str] = {}  # the place of each in `found`, and its path
     for place in places:
-        if _is_folder(place, follow):
-            inside = list(_descriptions(place, follow))
+        if is_answer_folder(place, follow):
+            inside = list(files_inside(place, follow))
             start = os.path.normpath(place) if len(places) > 1 else ""
             found += [Submission(os.path.join(start, name), name, os.path.join(place, name), follow) for name in inside]
             if not inside:  # one who handed in nothing has a mark beside the others'
@@ -74,7 +74,7 @@ def submissions(places: Sequence[str], follow: bool) -> list[Submission]:
             found.append(Submission("", place, place, follow))
         else:
             found.append(Submission(place, place, None, follow))
-    if len(places) == 1 and found[0].path == places[0] and _is_folder(places[0], follow):
+    if len(places) == 1 and found[0].path == places[0] and is_answer_folder(places[0], follow):
         expected = f"expected descriptions, files that end with {or_list(ENDINGS)}"
         raise InputError(f"{shown(places[0], MOST_SHOWN)}: found none in the folder, {expected}")
     for i, name in zip(single, _names([*single.values()]), strict=True):
@@ -82,7 +82,7 @@ def submissions(places: Sequence[str], follow: bool) -> list[Submission]:
     return found
 
 
-def _is_folder(place: str, follow: bool) -> bool:
+def is_answer_folder(place: str, follow: bool) -> bool:
     """Whether an argument is a folder; a link to one only where links are followed."""
     try:
         return stat.S_ISDIR((os.stat if follow else os.lstat)(place).st_mode)
@@ -102,8 +102,11 @@ def _names(paths: list[str]) -> list[str]:
         return list(paths)
 
 
-def _descriptions(folder: str, follow: bool) -> Iterator[str]:
-    """The paths in a folder of all that is called like a description, sorted; hidden files and folders are left out."""
+def files_inside(folder: str, follow: bool, endings: tuple[str, ...] = ENDINGS) -> Iterator[str]:
+    """The paths in a folder of all that is called like a description, sorted; hidden files and folders are left out.
+
+    endings: of other files, in small letters.
+    """
     seen: set[tuple[int, int]] = set()
     for place, folders, files in os.walk(folder, followlinks=follow):
         here = os.stat(place)
@@ -114,12 +117,12 @@ def _descriptions(folder: str, follow: bool) -> Iterator[str]:
         below = os.path.relpath(place, folder)
         deep = 0 if below == os.curdir else below.count(os.sep) + 1
         # A folder that is called like a description is no description, and is marked as that.
-        called = [name for name in folders if name.lower().endswith(ENDINGS)]
+        called = [name for name in folders if name.lower().endswith(endings)]
         folders[:] = sorted(
             name for name in folders if not name.startswith(".") and name not in called and deep < DEPTH
         )
         for name in sorted([*files, *called]):
-            if name.lower().endswith(ENDINGS) and not name.startswith("."):
+            if name.lower().endswith(endings) and not name.startswith("."):
                 yield os.path.normpath(os.path.join(below, name))
 
 
