@@ -13,17 +13,18 @@ from robokin.unfinished_work import in_order
 
 
 def expect_new_folder(output: str, option: str) -> Path:
-    """The path of a folder that is to be made. Raises InputError where there is something that is no empty folder."""
+    """The path of a folder that is to be made. Raises InputError where there is anything."""
     if Writing.refused:
         raise InputError(f"{option} {output}: expected no folder to write, answers are documents on standard output")
-    path = Path(output)
+    path, there = Path(output).absolute(), True
     try:
-        there = os.path.lexists(path)
-        empty = there and path.is_dir() and not path.is_symlink() and not any(path.iterdir())
+        path.lstat()
+    except FileNotFoundError:
+        there = False
     except (OSError, ValueError) as error:
         raise OutputError(f"{option} {shown(output)}: {getattr(error, 'strerror', None) or error}") from None
-    if there and not empty:
-        raise InputError(f"{option}: {shown(output)} is there already, expected the name of a new folder")
+    if there or not path.name or not output:
+        raise InputError(f"{option}: {shown(output) or 'nothing'} is there already, expected the name of a new folder")
     return path
 
 
@@ -53,8 +54,8 @@ def write_folder(path: Path, files: Iterable[tuple[str, bytes]], option: str) ->
                     made.add(place.parent)
                 place.write_bytes(data)
                 count += 1
-            if path.is_dir():
-                path.rmdir()  # an empty one, which some systems do not replace
+            if os.path.lexists(path):  # made meanwhile, by somebody else
+                raise OutputError(f"{option} {path}: is there already, nothing was written")
             temporary.rename(path)
         except OSError as error:
             raise OutputError(f"{option} {path}: {error.strerror or error}, nothing was written") from None

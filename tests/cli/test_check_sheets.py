@@ -152,6 +152,14 @@ def test_what_is_there_is_not_written_over(call, tmp_path, sheet):
     assert not (tmp_path / "s").exists()
 
 
+@pytest.mark.parametrize("place", [".", "/", "", "..", "a\0b"])
+def test_a_name_that_is_no_new_folder_is_refused(call, tmp_path, monkeypatch, place):
+    monkeypatch.chdir(tmp_path)
+    answer = call("check", "new", "planar2r", "--seed", "1", "-o", place)
+    assert (answer.status, answer.out) == (2, b"")
+    assert not [*tmp_path.iterdir()]
+
+
 def test_a_folder_that_cannot_be_made_is_said(call, tmp_path):
     (tmp_path / "file").write_text("")
     answer = call("check", "new", "planar2r", "--seed", "1", "-o", tmp_path / "file" / "s")
