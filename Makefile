@@ -14,7 +14,7 @@ WORKERS ?= $(shell $(PYTHON) -c 'import os; n = len(os.sched_getaffinity(0)) if 
 PYTEST  := python -m pytest --quiet --numprocesses $(WORKERS) --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow test-oldest test-newest lint fuzz bench completeness coverage corpora wheel audit docs lock clean
+.PHONY: help demo test test-slow test-oldest test-newest lint fuzz bench completeness coverage corpora wheel audit docs playground lock clean
 
 help:            ## what can be made
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
@@ -87,6 +87,9 @@ audit: $(VENV)/release ## known vulnerabilities of what the locks install
 
 docs: $(VENV)/dev ## rerun every command of README.md and docs/, and write what it prints now
 	$(BIN)/python tests/documentation.py
+
+playground: $(VENV)/dev ## robokin in the browser, as files that any server serves, in build/playground
+	$(BIN)/python docs/playground/build.py build/playground
 
 # One resolution for all: what is pinned for developers is what users and releases get.
 COMPILE := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --upgrade --custom-compile-command 'make lock'

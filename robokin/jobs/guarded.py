@@ -46,6 +46,9 @@ SHARE = 64
 
 LINUX = sys.platform.startswith("linux")
 
+NO_PROCESSES = sys.platform in ("emscripten", "wasi")
+"""Whether there are no processes to start, as in a browser: who asks there marks their own answer, without a budget."""
+
 
 @dataclass(frozen=True)
 class Overrun:
@@ -62,6 +65,9 @@ def guarded(
     budget: seconds of processor time for each. cores: so many processes share the tasks. A RobokinError of the function
     is raised here in its task's turn. Tasks and results travel between processes and so must pickle.
     """
+    if NO_PROCESSES:
+        yield from map(function, tasks)
+        return
     with contextlib.ExitStack() as running:
         lanes = [running.enter_context(_Lane(function, tasks[first::cores], budget)) for first in range(cores)]
         for number in range(len(tasks)):
