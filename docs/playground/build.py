@@ -1,9 +1,9 @@
 """Builds the playground: files for a static site, with Python, numpy and robokin for the browser.
 
 `python docs/playground/build.py FOLDER [--packages CACHE]`, or `make playground`. robokin and the packages that it
-needs are packed from where this Python has them. What comes from elsewhere stands in `FETCHED`, each with its digest: Pyodide
-and the editor from npm's registry, numpy for Pyodide from Pyodide's own distribution. A file that lies in the cache
-already, put there by hand or by an earlier run, is not fetched.
+needs are packed from where this Python has them. What comes from elsewhere stands in `FETCHED`, each with its digest:
+Pyodide and the editor from npm's registry, numpy for Pyodide from Pyodide's own distribution. A file that lies in the
+cache already, put there by hand or by an earlier run, is not fetched.
 """
 
 from __future__ import annotations
