@@ -227,6 +227,7 @@ async function answer() {
     const found = await ask("run", words, columns());
     if (mine !== asked) return;
     show(found, $("answer"));
+    Object.assign($("answer").dataset, {of: `robokin ${words}`, status: found.status});
     $("note").textContent = found.note;
     files(found.files);
     if (view !== undefined && found.status !== 2) await picture(view);
@@ -333,7 +334,8 @@ function reached(node, seen = new Set()) {
     ...(node.anyOf || []), ...(node.oneOf || []), ...(node.allOf || []), ...(node.prefixItems || [])];
   return [node, ...parts.filter((part) => part && typeof part === "object").flatMap((part) => reached(part, seen))];
 }
-const properties = (nodes) => Object.assign({}, ...nodes.map((node) => node.properties || {}));
+// What may stand under a key; several kinds of descriptions may have it.
+const under = (nodes, key) => nodes.flatMap((node) => reached(node.properties?.[key]));
 export function completions(lines, column, prefix) {
   const now = lines[lines.length - 1].slice(0, column - prefix.length);
   let depth = now.match(/^[\s-]*/)[0].length;
@@ -343,11 +345,13 @@ export function completions(lines, column, prefix) {
     if (key && key[1].length < depth) { parents.unshift(key[2]); depth = key[1].length; }
   }
   let nodes = reached(library.schema);
-  for (const parent of parents) nodes = reached(properties(nodes)[parent]).concat(nodes.filter((node) => node === library.schema));
-  const inside = now.match(/([\w-]+):\s*$/), known = properties(nodes);
+  for (const parent of parents) nodes = under(nodes, parent);
+  const inside = now.match(/([\w-]+):\s*$/), brace = now.match(/([\w-]+):\s*\{[^{}]*$/);
+  if (brace && !/^\s*-/.test(now)) nodes = under(nodes, brace[1]);
+  const known = Object.assign({}, ...nodes.map((node) => node.properties || {}));
   if (inside) {
-    const words = reached(known[inside[1]]).flatMap((node) => node.enum || (node.const !== undefined ? [node.const] : []));
-    return words.map((word) => ({value: String(word), meta: inside[1], score: 2}));
+    const words = under(nodes, inside[1]).flatMap((node) => node.enum || (node.const !== undefined ? [node.const] : []));
+    return [...new Set(words)].map((word) => ({value: String(word), meta: inside[1], score: 2}));
   }
   if (now.trim() && !/[-{,]\s*$/.test(now)) return [];
   return Object.entries(known).map(([key, node]) => ({value: `${key}: `, caption: key, meta: node.description || "", score: 1}));
@@ -425,4 +429,4 @@ const listed = fetch("library.json").then((found) => found.json()).then((found) 
 await edit();
 await follow();
 await listed;
-window.playground = {ask, text, setText, read, answer};
+window.playground = {ask, text, setText, read, answer, link};
