@@ -33,7 +33,7 @@ CALCULATING = [
     "kernel", "jobs", "assembly", "kinematics", "inverse", "workspace", "mobility", "derivation", "grading",
 ]  # fmt: skip
 HOMES = {
-    "yaml": "formats", "typer": "cli", "rich": "reports", "matplotlib": "pictures", "pyarrow": "tables", "dask": "jobs",
+    "yaml": "formats", "typer": "cli", "rich": "reports", "matplotlib": "pictures", "PIL": "pictures", "pyarrow": "tables", "dask": "jobs",
     "distributed": "jobs",
 }  # fmt: skip
 

@@ -133,6 +133,22 @@ class DescriptionOptions(UnitOptions):
     exact: ExactOption = False
     package: PackageOption = None
 
+    def words(self, name: str) -> str:
+        """The robot with its options as a command line has them, for a shell."""
+        import shlex
+
+        words = [name]
+        for option, value in vars(self).items():
+            if option in ("angle", "length") or not value:
+                continue
+            flag = "--" + option.strip("_")
+            words += (
+                [flag]
+                if value is True
+                else [w for v in ([value] if isinstance(value, str) else value) for w in (flag, v)]
+            )
+        return shlex.join(words)
+
     def part(self) -> Part:
         """Which part of a description is meant. Raises InputError."""
         from robokin.formats.part import Part

@@ -13,15 +13,25 @@ from robokin.pictures.arm_bars import LINK, SQUARE, Bar, ends_of, perpendicular
 
 COLOURS = {
     "link": "#a9bac9", "slide": "#e5b48f", "revolute": "#2b628f", "prismatic": "#c8551b", "stroke": "#b98a6a",
-    "base": "#6d757d", "palm": "#d3dde6", "x": "#cf2f2f", "y": "#2a8f3c", "z": "#2f55cf",
+    "base": "#6d757d", "palm": "#d3dde6", "x": "#cf2f2f", "y": "#2a8f3c", "z": "#2f55cf", "mark": "#e0a100",
 }  # fmt: skip
-"""Colours of the pieces and of a frame's axes."""
+"""Colours of the pieces, of a frame's axes, and of what happens on a path."""
 
 CROSS = "#222222"
 """Colour of a place that was asked for."""
 
-GHOSTS = ("#c8551b", "#3f7f4f", "#8a5a9e", "#b08a1e", "#4f8f9e", "#a8455d", "#5f5f9e", "#6e6a3a")
-"""Colours of ghosts, told apart by the colour-blind too when few."""
+POSTURES = (
+    "#c8551b", "#3f7f4f", "#8a5a9e", "#b08a1e", "#4f8f9e", "#a8455d", "#5f5f9e", "#6e6a3a",
+    "#e58a3c", "#1f9e74", "#c46bb5", "#7a5230", "#2f7fd0", "#d94f4f", "#9aa33a", "#454f5b",
+)  # fmt: skip
+"""Colours of several arms, one for each, on pages, in stills and in their keys: told apart by the colour-blind too when
+few. There are as many as solutions are drawn."""
+
+BETWEEN = "#7d8fa0"
+"""Colour of ghosts without a name, along a path."""
+
+TRACE = "#d0021b"
+"""Colour of the way of a tool, or of an origin."""
 
 PALE = (0.45, 0.65)
 """How pale the joints and the links of a ghost are."""
@@ -69,9 +79,15 @@ def colour(name: str, pale: float = 0.0) -> Array:
 
 
 def arm_faces(
-    arm: ArmShape, frames: Array, eye: Array, ghost: str | None = None, drawn: set[tuple[object, ...]] | None = None
+    arm: ArmShape,
+    frames: Array,
+    eye: Array,
+    ghost: str | None = None,
+    drawn: set[tuple[object, ...]] | None = None,
+    own: str | None = None,
 ) -> Iterator[Face]:
-    """The faces of an arm in the world; frames: `body_frames`; eye: `eye_axes`; ghost: the one colour of a ghost.
+    """The faces of an arm in the world; frames: `body_frames`; eye: `eye_axes`; ghost: the one colour of a ghost; own:
+    that of a solid arm's joints where it is one of several.
 
     drawn: what arms before have drawn; a ghost's piece that falls together with one of those is left out.
     """
@@ -86,10 +102,12 @@ def arm_faces(
             if ghost is not None and key in drawn:
                 continue
             drawn.add(key)
-        paint = colour(COLOURS[bar.role]) if ghost is None else colour(ghost, PALE[bar.role == "link"])
+        joint = bar.role in ("revolute", "prismatic")
+        solid = own if own is not None and joint else COLOURS[bar.role]
+        paint = colour(solid) if ghost is None else colour(ghost, PALE[bar.role == "link"])
         across = frames[bar.bodies[0], :3, :3] @ bar.across
         faces = prism_faces(a, b, across, (bar.width, bar.width), bar.sides, eye, paint)
-        if bar.role in ("revolute", "prismatic", "base"):
+        if joint or bar.role == "base":
             yield from faces
         else:
             yield from (face for face in faces if not _inside(face.corners.mean(axis=0), joints))

@@ -7,20 +7,28 @@ of all tips by name.
 
 from __future__ import annotations
 
+import shlex
 from typing import Any
 
 import numpy as np
 
 from robokin.arrays import Array
+from robokin.model.joint_units import in_units, joint_factors
 from robokin.pictures.arm import default_configuration
 from robokin.pictures.arm_bars import LINK, Bar
-from robokin.pictures.arm_faces import COLOURS, CROSS, GHOSTS
-from robokin.pictures.arm_scene import Posture, Scene
+from robokin.pictures.arm_faces import COLOURS, CROSS, PALE, PALE_PALM, TRACE
+from robokin.pictures.arm_scene import Scene
 from robokin.pictures.skeleton import branches_of, leads_of
 from robokin.pictures.workspace_page import filled
 
 DIGITS = 5
 """Significant digits of what is only drawn: far finer than a screen."""
+
+ROW_DIGITS = 9
+"""Significant digits of a path's joint values: more than the page shows."""
+
+OWN = COLOURS["revolute"]
+"""The colour beside the name of an arm that stands alone: that of its joints."""
 
 
 def arm_page(scene: Scene) -> bytes:
@@ -33,7 +41,7 @@ def arm_page(scene: Scene) -> bytes:
     poses = {home_name or "default": home} | dict(robot.poses)
     data = {
         "title": scene.title,
-        "robot": scene.name,
+        "words": scene.words or shlex.quote(scene.name),
         "length": units.length,
         "angle": units.angle,
         "radians": units.radians,
@@ -44,7 +52,12 @@ def arm_page(scene: Scene) -> bytes:
         "groups": [list(group) for group in branches_of(robot)],
         "q": _values(scene, scene.postures[0].q),
         "poses": {name: _values(scene, q) for name, q in poses.items()},
-        "ghosts": [_ghost(scene, posture) for posture in scene.postures],
+        "ghosts": [
+            {"q": _values(scene, posture.q), "label": posture.label, "ghost": posture.ghost, "colour": paint or OWN}
+            for posture, paint in zip(scene.postures, scene.colours(), strict=True)
+        ],
+        "path": _path(scene),
+        "trace": TRACE,
         "target": None if scene.target is None else _scaled(scene.target, scale),
         "turned": scene.turned,
         "note": scene.note,
@@ -61,7 +74,7 @@ def arm_page(scene: Scene) -> bytes:
         "box": _short(np.array([low, high]) * scale),
         "view": list(scene.view),
         "colours": COLOURS | {"cross": CROSS},
-        "palette": list(GHOSTS),
+        "pale": [*PALE, PALE_PALM],
     }
     return filled("arm.html", scene.title, data)
 
@@ -90,7 +103,7 @@ def _values(scene: Scene, q: Array) -> list[float]:
 
 
 def _factors(scene: Scene) -> Array:
-    return np.where(scene.arm.robot.revolute, scene.units.radians, scene.units.metres)
+    return joint_factors(scene.arm.robot, scene.units)
 
 
 def _joint(scene: Scene, i: int) -> dict[str, Any]:
@@ -109,8 +122,22 @@ def _joint(scene: Scene, i: int) -> dict[str, Any]:
     }
 
 
-def _ghost(scene: Scene, posture: Posture) -> dict[str, Any]:
-    return {"q": _values(scene, posture.q), "label": posture.label, "ghost": posture.ghost}
+def _path(scene: Scene) -> dict[str, Any] | None:
+    """A path as the page plays it: its rows in the units, the ends as they were typed."""
+    track = scene.track
+    if track is None:
+        return None
+    factors = _factors(scene)
+    q = _digits(track.q / factors, ROW_DIGITS)
+    q[0], q[-1] = in_units(track.q[0], factors).tolist(), in_units(track.q[-1], factors).tolist()
+    return {
+        "t": _digits(track.t, ROW_DIGITS),
+        "q": q,
+        "rates": None if track.rates is None else _digits(track.rates / factors, DIGITS),
+        "timed": track.timed,
+        "seconds": track.seconds,
+        "marks": [list(mark) for mark in track.marks],
+    }
 
 
 def _bar(bar: Bar, scale: float) -> list[Any]:
@@ -119,5 +146,9 @@ def _bar(bar: Bar, scale: float) -> list[Any]:
 
 
 def _short(values: Array) -> Any:
-    digits = [float(f"{value:.{DIGITS}g}") + 0.0 for value in np.ravel(values).tolist()]
+    return _digits(values, DIGITS)
+
+
+def _digits(values: Array, count: int) -> Any:
+    digits = [float(f"{value:.{count}g}") + 0.0 for value in np.ravel(values).tolist()]
     return np.reshape(digits, np.shape(values)).tolist()

@@ -11,6 +11,8 @@ from robokin.arrays import Array
 from robokin.model import Robot, Tree
 from robokin.pictures.arm import ArmShape, arm_of, body_frames, default_configuration, lines_of, plane_of
 from robokin.pictures.arm_bars import ends_of
+from robokin.pictures.arm_faces import BETWEEN, COLOURS, POSTURES
+from robokin.pictures.arm_track import ArmTrack, postures_at
 from robokin.pictures.skeleton import FrameMark
 from robokin.units import Units
 
@@ -29,6 +31,9 @@ PLANES = {0: (0.0, 0.0), 1: (-90.0, 0.0), 2: (-90.0, 90.0)}
 
 MARGIN = 0.03
 """Room about what is drawn, as a part of its longest side."""
+
+SEEN = 25
+"""Rows of a path at which the room that the arm takes is looked at."""
 
 ALONG = 1e-9
 """A direction is an axis of the world when its other components are below this."""
@@ -49,7 +54,8 @@ class Scene:
 
     target (4, 4) [m]: the pose that was asked for, `turned` whether its orientation was; frames: whether all are
     drawn, or base and tips alone; view: azimuth and elevation [°] of the eye, `flat` whether axes are drawn as in the
-    plane; name: what a shell calls the robot; note: what the user should know.
+    plane; name: what a shell calls the robot; note: what the user should know; track: a path that is followed; words:
+    the robot and its options as a command line has them, by default the name.
     """
 
     title: str
@@ -64,6 +70,26 @@ class Scene:
     turned: bool = True
     name: str = ""
     note: str = ""
+    track: ArmTrack | None = None
+    words: str = ""
+
+    def colours(self) -> list[str | None]:
+        """The colour of each posture, the same in all pictures; None for an arm that stands alone, in all its colours.
+
+        Each of several arms that have a name has its own; ghosts without a name share one.
+        """
+        several = sum(bool(posture.label) for posture in self.postures) > 1
+        found: list[str | None] = []
+        number = 0
+        for posture in self.postures:
+            if posture.label and several:
+                found.append(POSTURES[number % len(POSTURES)])
+                number += 1
+            elif posture.ghost:
+                found.append(COLOURS["revolute"] if posture.label else BETWEEN)
+            else:
+                found.append(None)
+        return found
 
     def bounds(self) -> tuple[Array, Array]:
         """Corners (3,), (3,) [m] of a box about all that is drawn."""
@@ -79,6 +105,12 @@ class Scene:
                 for mark in self.marks():
                     T, reach = frames[mark.body] @ mark.T, room * self.arm.axes(mark.body)
                     points.append(T[:3, 3] + reach * np.vstack([np.zeros(3), T[:3, :3].T]))
+        if self.track is not None:
+            # The whole arm on its way, by some rows.
+            for k in postures_at(len(self.track.t), SEEN):
+                frames = body_frames(self.arm.robot, self.track.q[k])
+                points += [np.array(ends_of(bar, frames)) + s * bar.width for bar in self.arm.bars for s in (-1.0, 1.0)]
+            points.append(self.track.places)
         if self.target is not None:
             points.append(self.target[:3, 3] + room * np.vstack([np.zeros(3), self.target[:3, :3].T]))
         low, high = np.min(np.concatenate(points), axis=0), np.max(np.concatenate(points), axis=0)

@@ -9,7 +9,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.pictures.arm import body_frames, lines_of
-from robokin.pictures.arm_faces import GHOSTS, Face, arm_faces, colour, cross_faces, frame_faces, ordered
+from robokin.pictures.arm_faces import COLOURS, TRACE, Face, arm_faces, colour, cross_faces, frame_faces, ordered
 from robokin.pictures.arm_scene import Scene, axis_names, eye_axes
 from robokin.pictures.workspace_stills import drawing, written
 from robokin.units import Units
@@ -29,6 +29,9 @@ LEFT, RIGHT, HEAD, FOOT = 0.9, 0.35, 0.95, 0.75
 
 KEY = 3.5
 """Inches for the names of ghosts at the right."""
+
+MARKS = 6
+"""Events of a path that are told in words at most."""
 
 SAME = 0.03
 """Names of places nearer to one another than this part of the arm's length stand together."""
@@ -55,7 +58,7 @@ def _draw(figure: Figure, scene: Scene) -> None:
     eye = eye_axes(scene.view)
     names = axis_names(scene.view) if scene.flat else None
     keyed = [posture for posture in scene.postures if posture.label]
-    key = KEY if keyed else 0.0
+    key = KEY if keyed or (scene.track is not None and scene.track.marks) else 0.0
     if names:
         shown = ["xyz".index(name) for name in names]
         size = (high - low)[shown]
@@ -81,6 +84,7 @@ def _draw(figure: Figure, scene: Scene) -> None:
     else:
         axes = figure.add_axes(room, projection="3d", computed_zorder=False)
         draw_solid(axes, scene.units, scene.view, layers, (low, high))
+    _track(axes, scene, eye, bool(names))
     marks = _names(scene)
     # Points of paper in a metre: exact in a plane, near enough in space.
     points = 72.0 * SIDE / float(np.max(np.ptp(_box(low, high) @ eye[:2].T, axis=0)))
@@ -88,7 +92,7 @@ def _draw(figure: Figure, scene: Scene) -> None:
     for (place, text, paint), aside in zip(marks, asides, strict=True):
         at = (eye @ place)[:2] if names else place
         label(axes, at / scene.units.metres, text, paint, aside)
-    if keyed:
+    if key:
         _key(figure, scene, (1.0 - (key - 0.1) / width, 1.0 - head / height), height)
 
 
@@ -104,12 +108,14 @@ def _faces(scene: Scene, eye: Array) -> tuple[list[Face], list[Face]]:
     ghosts: list[Face] = []
     length = scene.arm.length
     drawn: set[tuple[object, ...]] = set()
-    for number, posture in enumerate(scene.postures):
+    paints = scene.colours()
+    # Solid arms come first: what of a ghost falls together with one is left out.
+    for number, posture in sorted(enumerate(scene.postures), key=lambda entry: entry[1].ghost):
         frames = body_frames(scene.arm.robot, posture.q)
         if posture.ghost:
-            ghosts += arm_faces(scene.arm, frames, eye, _paint(scene, number), drawn)
+            ghosts += arm_faces(scene.arm, frames, eye, paints[number], drawn)
             continue
-        faces += arm_faces(scene.arm, frames, eye, None, drawn)
+        faces += arm_faces(scene.arm, frames, eye, None, drawn, paints[number])
         for mark in scene.marks():
             axes += frame_faces(frames[mark.body] @ mark.T, length * scene.arm.axes(mark.body), eye)
     if scene.target is not None:
@@ -120,10 +126,17 @@ def _faces(scene: Scene, eye: Array) -> tuple[list[Face], list[Face]]:
     return arms, ordered(axes, eye)
 
 
-def _paint(scene: Scene, number: int) -> str:
-    """The colour of a ghost."""
-    solid = sum(not posture.ghost for posture in scene.postures[:number])
-    return GHOSTS[(number - solid) % len(GHOSTS)]
+def _track(axes: Any, scene: Scene, eye: Array, flat: bool) -> None:
+    """The way of the tool, where it begins, and what happens on it."""
+    if scene.track is None:
+        return
+    places = scene.track.places
+    points = (places @ eye.T)[:, :2] if flat else places
+    points = points / scene.units.metres
+    axes.plot(*points.T, color=TRACE, linewidth=1.8, zorder=6)
+    axes.plot(*points[:1].T, "o", color=TRACE, markersize=5, zorder=6)
+    for row, _ in scene.track.marks:
+        axes.plot(*points[row : row + 1].T, "D", color=COLOURS["mark"], markeredgecolor=INK, markersize=6, zorder=7)
 
 
 def _plane(
@@ -264,14 +277,19 @@ def spread_labels(places: Sequence[Array], texts: Sequence[str]) -> list[tuple[i
 
 def _key(figure: Figure, scene: Scene, corner: tuple[float, float], height: float) -> None:
     """The names of the arms at the right, each with its colour."""
-    top = corner[1]
+    top, paints = corner[1], scene.colours()
     for i, posture in enumerate(scene.postures):
         if not posture.label:
             continue
         text = f"{_tag(scene, i)}  {posture.label}"
         lines = textwrap.wrap(text, 46, subsequent_indent="    ", break_on_hyphens=False)
-        paint = colour(_paint(scene, i), 0.4) if posture.ghost else colour("#2b628f")
-        figure.text(corner[0], top, "■", color=paint, fontsize=12, va="top")
+        figure.text(corner[0], top, "■", color=colour(paints[i] or COLOURS["revolute"]), fontsize=12, va="top")
+        beside = corner[0] + 0.2 / float(figure.get_figwidth())
+        figure.text(beside, top, "\n".join(lines), fontsize=8.8, va="top", color=INK, linespacing=1.35)
+        top -= (0.185 * len(lines) + 0.1) / height
+    for _, words in scene.track.marks[:MARKS] if scene.track is not None else ():
+        lines = textwrap.wrap(words, 46)
+        figure.text(corner[0], top, "◆", color=COLOURS["mark"], fontsize=10, va="top")
         beside = corner[0] + 0.2 / float(figure.get_figwidth())
         figure.text(beside, top, "\n".join(lines), fontsize=8.8, va="top", color=INK, linespacing=1.35)
         top -= (0.185 * len(lines) + 0.1) / height

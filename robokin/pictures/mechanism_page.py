@@ -6,13 +6,14 @@ displacement then: 3 rows of 4 numbers, in the page's length unit.
 
 from __future__ import annotations
 
+import shlex
 from typing import Any
 
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.pictures.mechanism_scene import MechanismScene
-from robokin.pictures.mechanism_shape import StraightPiece, link_colours
+from robokin.pictures.mechanism_scene import PLAYED, MechanismScene
+from robokin.pictures.mechanism_shape import PATHS, StraightPiece, link_colours
 from robokin.pictures.workspace_page import filled
 
 DIGITS = 6
@@ -52,7 +53,11 @@ def mechanism_page(scene: MechanismScene) -> bytes:
         "box": _short(np.array([low, high]) * scale),
         "view": list(scene.view),
         "note": scene.note,
-        "command": f"robokin dof {mechanism.id}" + (f" --trace {len(picked)}" if trace is not None else ""),
+        "palette": list(PATHS),
+        "seconds": PLAYED,
+        "lead": scene.lead(),
+        "command": f"robokin dof {scene.words or shlex.quote(mechanism.id)}"
+        + (f" --trace {len(picked)} --drive {shlex.quote(trace.driven)}" if trace is not None else ""),
     }
     if trace is not None:
         numbers = [mechanism.links.index(link) for link in moving]

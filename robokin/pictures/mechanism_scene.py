@@ -15,6 +15,9 @@ from robokin.pictures.arm_scene import PLANES, SLANTING
 from robokin.pictures.mechanism_shape import Shape, shape_of
 from robokin.units import Units
 
+PLAYED = 5.0
+"""Seconds in which a motion is played."""
+
 MARGIN = 0.03
 """Room about what is drawn, as a part of its longest side."""
 
@@ -27,7 +30,8 @@ class MechanismScene:
     """A mechanism's shape and motion.
 
     trace: configurations along its motion, or None; paths: (m, points, 3) [m] those of points that are followed;
-    view: azimuth and elevation [°] of the eye; note: what the user should know.
+    view: azimuth and elevation [°] of the eye; note: what the user should know; words: the mechanism and its options as
+    a command line has them, by default the name.
     """
 
     mechanism: Mechanism
@@ -37,6 +41,13 @@ class MechanismScene:
     paths: Array
     view: tuple[float, float]
     note: str = ""
+    words: str = ""
+
+    def lead(self) -> int:
+        """The number of the joint value that leads the motion; -1 where there is none, or the joint has several."""
+        if self.trace is None or self.trace.driven not in self.trace.labels:
+            return -1
+        return self.trace.labels.index(self.trace.driven)
 
     def ways(self) -> list[Array]:
         """The ways (m, 3) [m] of joints that move, those of links that do not stand still."""

@@ -12,6 +12,7 @@ from robokin.pictures.arm_faces import ordered
 from robokin.pictures.arm_scene import eye_axes
 from robokin.pictures.arm_stills import INK, draw_solid, label, spread_labels
 from robokin.pictures.mechanism_scene import MechanismScene, shape_faces
+from robokin.pictures.mechanism_shape import PATHS
 from robokin.pictures.workspace_stills import FREE, drawing, written
 
 if TYPE_CHECKING:
@@ -20,9 +21,6 @@ if TYPE_CHECKING:
 
 SIDE = 5.6
 """Inches of the drawing's longer side."""
-
-PATHS = ("#d0021b", "#1f77b4", "#2ca02c", "#9467bd", "#8c564b")
-"""Colours of the points' paths."""
 
 NAMES = 24
 """Joints that are named at most: the letters of more would cover the picture."""
@@ -55,10 +53,10 @@ def _draw(figure: Figure, scene: MechanismScene) -> None:
     scale = 1.0 / scene.units.metres
     closed = scene.trace is not None and scene.trace.closed
     for way in scene.ways():
-        axes.plot(*_loop(way * scale, closed).T, color=FREE, linewidth=0.8, linestyle=(0, (4, 2.5)), zorder=2)
+        axes.plot(*looped(way * scale, closed).T, color=FREE, linewidth=0.8, linestyle=(0, (4, 2.5)), zorder=2)
     for i in range(scene.paths.shape[1]):
         paint = PATHS[i % len(PATHS)]
-        axes.plot(*_loop(scene.paths[:, i] * scale, closed).T, color=paint, linewidth=1.8, zorder=5, label=f"P{i + 1}")
+        axes.plot(*looped(scene.paths[:, i] * scale, closed).T, color=paint, linewidth=1.8, zorder=5, label=f"P{i + 1}")
     if scene.paths.shape[1]:
         axes.legend(loc="upper right", frameon=False, fontsize=8.5)
     marks = [(place, name) for name, _, place in scene.shape.names][:NAMES]
@@ -68,5 +66,6 @@ def _draw(figure: Figure, scene: MechanismScene) -> None:
         label(axes, place * scale, name, INK, aside)
 
 
-def _loop(path: Array, closed: bool) -> Array:
+def looped(path: Array, closed: bool) -> Array:
+    """A way (m, 3), of a closed motion with its beginning at the end."""
     return np.concatenate([path, path[:1]]) if closed else path

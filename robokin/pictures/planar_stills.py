@@ -11,6 +11,7 @@ from robokin.arrays import Array, Index
 from robokin.mobility.gear_wheels import belt_lines, wheels_of
 from robokin.mobility.trace import Trace
 from robokin.model import Mechanism, MechanismJoint
+from robokin.pictures.mechanism_shape import GROUND, LINKS, PATHS
 from robokin.pictures.workspace_stills import FREE, RESOLUTION, STYLE, require_matplotlib
 from robokin.units import Units
 
@@ -26,15 +27,6 @@ LEFT, RIGHT, HEAD, FOOT = 0.9, 0.35, 0.95, 0.95
 
 MARGIN = 0.07
 """Room about what is drawn, as a part of its longer side."""
-
-LINKS = ("#c8551b", "#1b4b72", "#3f7f4f", "#8a5a9e", "#b08a1e", "#4f8f9e", "#9e4f5f", "#5f5f9e")
-"""Colours of links, told apart by the colour-blind too when few."""
-
-GROUND = "#444444"
-"""Colour of what stands still."""
-
-PATHS = ("#d0021b", "#1f77b4", "#2ca02c", "#9467bd", "#8c564b")
-"""Colours of the points' paths."""
 
 BLOCK = 0.05
 """Length of a slide's block, as a part of the longer side."""

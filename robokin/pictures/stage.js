@@ -35,3 +35,18 @@ function stage() {
   ctx.fillText(`grid ${plain(step)} ${data.length}`, 10, h - 10);
   return {w, h, ink, paperName, paper, place};
 }
+// All faces, from the farthest to the nearest.
+function paint(faces, place) {
+  ctx.lineJoin = "round"; ctx.lineWidth = 0.7;
+  for (const {corners, colour} of faces) {
+    ctx.beginPath();
+    corners.forEach((p, i) => ctx[i ? "lineTo" : "moveTo"](...place(p)));
+    ctx.closePath(); ctx.fillStyle = ctx.strokeStyle = colour; ctx.fill(); ctx.stroke();
+  }
+}
+function viewButtons() {
+  for (const [name, a, e] of [["slanting", -58, 22], ["top", -90, 90], ["front", -90, 0], ["side", 0, 0]]) {
+    make("button", $("views"), name).addEventListener("click", () => { zoom = 1; shift = [0, 0]; view(a, e); });
+    $("views").append(" ");
+  }
+}

@@ -464,7 +464,7 @@ def test_a_parameter_changes_the_motion(call):
         (["cam-roller", "--trace", "3"], ["contacts"]),
         (["four-bar", "--output", "x.npy"], ["an array holds configurations", "--trace N"]),
         (["four-bar", "--output", "x.txt"], ["expected a name that ends with"]),
-        (["four-bar", "--plot", "x.gif"], ["--plot: found 'x.gif'", ".png, .svg, .pdf or .html"]),
+        (["four-bar", "--plot", "x.bmp"], ["--plot: found 'x.bmp'", ".png, .svg, .pdf, .html or .gif"]),
         (["puma560", "--plot", "x.png"], ["--plot is for mechanisms"]),
         (["fourbar"], ["did you mean four-bar"]),
         (["four-bar", "extra"], ["'extra'", "expected nothing more"]),

@@ -10,7 +10,7 @@ from robokin.cli.completion import robots, words
 from robokin.cli.option_groups import ArrayOutputOptions, DescriptionOptions
 from robokin.cli.options import choose, option, whole_number
 from robokin.cli.statuses import DONE
-from robokin.errors import InputError, did_you_mean, or_list, shown
+from robokin.errors import InputError, or_list, shown
 
 if TYPE_CHECKING:
     from robokin.mobility.point_paths import Point
@@ -55,7 +55,7 @@ def command(
         option("--point", "LINK:X,Y", "Follow a point of a link, where it is as assembled; repeatable."),
     ] = None,
     plot: Annotated[
-        str | None, option("--plot -p", "FILE", "Draw the mechanism to .png, .svg, .pdf, or .html that moves.")
+        str | None, option("--plot -p", "FILE", "Draw the mechanism to .png, .svg, .pdf, or .html and .gif that move.")
     ] = None,
     mode: Annotated[str | None, option("--mode", "N", "Which way to put links of given lengths together.")] = None,
     seed: Annotated[str | None, option("--seed", "N", "Taken as before: nothing hangs on it.")] = None,
@@ -144,7 +144,7 @@ def _described(
     entry = description.anything(name, mode)
     units = description.over(entry.units)
     if isinstance(entry, Mechanism):
-        return _mechanism(entry, units, kind, motion, seed)
+        return _mechanism(entry, units, kind, motion, seed, description.words(name))
     _refuse(motion, "is for mechanisms", "one of those")
     if isinstance(entry, CoupledRobot):
         entry = tree_of(entry)
@@ -163,7 +163,7 @@ def _described(
 
 
 def _mechanism(
-    mechanism: Mechanism, units: Units, kind: str, motion: dict[str, Any], seed: int
+    mechanism: Mechanism, units: Units, kind: str, motion: dict[str, Any], seed: int, words: str
 ) -> dict[str, Any] | bytes:
     from robokin.mobility.verdict import mobility_of
     from robokin.records.freedom_records import mechanism_record
@@ -179,21 +179,22 @@ def _mechanism(
 
         check_drawable(mechanism, plot, "--plot")
     if steps is not None or plot is not None:
+        from robokin.cli.mechanism_points import typed_point
         from robokin.records.motion_records import MotionRecords
         from robokin.reports.motion_report import motion_written
 
-        points = [_point(text, mechanism, units) for text in motion["--point"] or []]
+        points = [typed_point(text, mechanism, units) for text in motion["--point"] or []]
         wanted = bool(steps is not None or points or motion["--drive"])
         moved = _trace(mechanism, steps, motion["--drive"], wanted)
         if plot is not None:
-            _plot(plot, mechanism, moved, points, units)
+            _plot(plot, mechanism, moved, points, units, words)
         if steps is not None and moved is not None:
             return motion_written(MotionRecords(moved, points, units), kind)
     found = mobility_of(mechanism, _pair(motion["--between"]), seed)
     return mechanism_record(found, units, seed)
 
 
-def _plot(plot: str, mechanism: Mechanism, moved: Trace | None, points: list[Point], units: Units) -> None:
+def _plot(plot: str, mechanism: Mechanism, moved: Trace | None, points: list[Point], units: Units, words: str) -> None:
     """Draw to a file."""
     from pathlib import Path
 
@@ -202,7 +203,7 @@ def _plot(plot: str, mechanism: Mechanism, moved: Trace | None, points: list[Poi
     from robokin.tables.sink import sink
 
     paths = paths_of(moved, points) if moved is not None else None
-    picture = picture_of(mechanism, moved, paths, units, Path(plot).suffix.lower())
+    picture = picture_of(mechanism, moved, paths, units, Path(plot).suffix.lower(), words=words)
     with sink(plot, "--plot") as stream:
         stream.write(picture)
 
@@ -225,23 +226,3 @@ def _pair(between: str | None) -> tuple[str, str] | None:
     if len(names) != 2 or not all(names):
         raise InputError(f"--between: found '{shown(between)}', expected two links with a comma: A,B")
     return names[0], names[1]
-
-
-def _point(text: str, mechanism: Mechanism, units: Units) -> Point:
-    """A point such as `coupler:1,2`, of a link and in the assembled configuration. Raises InputError."""
-    import numpy as np
-
-    from robokin.cli.arguments import parse_numbers, split_vector
-    from robokin.mobility.point_paths import Point
-
-    link, colon, place = text.rpartition(":")
-    link = link.strip()
-    if not colon or not link:
-        raise InputError(f"--point: found '{shown(text)}', expected LINK:X,Y, such as {mechanism.links[-1]}:1,2")
-    if link not in mechanism.links:
-        hint = did_you_mean(link, mechanism.links) or f", expected one of {', '.join(mechanism.links[:12])}"
-        raise InputError(f"--point: found the unknown link '{shown(link)}'{hint}")
-    plane = mechanism.space == "planar" and len(split_vector(place)) != 3
-    what = "x, y" if plane else "x, y and z"
-    numbers = parse_numbers(place, "--point", [False] * (2 if plane else 3), units, what)
-    return Point(link, np.append(numbers, 0.0)[:3] * units.metres)

@@ -57,6 +57,10 @@ def command(
             words(*TASKS),
         ),
     ] = None,
+    plot: Annotated[
+        str | None,
+        option("--plot -p", "FILE", "Draw it to .html that plays it, .gif, or a still: .png, .svg, .pdf."),
+    ] = None,
     no_limits: Annotated[bool, typer.Option("--no-limits", help="Also outside the joint limits.")] = False,
     timing: TimingOptions,
     output: ArrayOutputOptions,
@@ -87,11 +91,14 @@ def command(
     from robokin.inverse.follow import MOST
     from robokin.inverse.paths_to_poses import Manner, path_through
     from robokin.model.joint_units import joint_factors
+    from robokin.pictures.picture_files import MOVING, picture_ending
     from robokin.records.path_records import PathRecords
     from robokin.reports.path_report import PathReport
     from robokin.tables.sink import sink
 
     kind = output.kind
+    if plot is not None:
+        picture_ending(plot, "--plot", MOVING)
     way: Any = "line" if line else "arc" if arc is not None else "joint"
     chosen_ways = [name for name, flag in (("--joint", joint), ("--line", line), ("--arc", arc is not None)) if flag]
     if len(chosen_ways) > 1:
@@ -117,6 +124,14 @@ def command(
     if kind not in ("table", "json"):
         for sentence in answer.notes():
             say(sentence)
+    if plot is not None:
+        from robokin.pictures.drawn_path import path_picture
+
+        picture = path_picture(
+            path, units, plot.rpartition(".")[2].lower(), [*answer.notes()], words=description.words(robot)
+        )
+        with sink(plot, "--plot") as stream:
+            stream.write(picture)
     with sink(output.file) as stream:
         stream.writelines(answer.write(kind, stream))
     return DONE if path.complete else NO

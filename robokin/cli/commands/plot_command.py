@@ -48,11 +48,17 @@ def command(
     view: Annotated[
         str | None, option("--view", "AZ,EL", "Azimuth and elevation of the eye in degrees.  [default: -58,22 or flat]")
     ] = None,
+    drive: Annotated[
+        str | None, option("--drive", "JOINT", "The joint that leads a mechanism.  [default: the actuated one]")
+    ] = None,
+    point: Annotated[
+        list[str] | None, option("--point", "LINK:X,Y", "Trace a point of a mechanism's link; repeatable.")
+    ] = None,
     mode: Annotated[
         str | None, option("--mode", "N", "Which way to put a mechanism's links of given lengths together.")
     ] = None,
     output: Annotated[
-        str | None, option("--output -o", "FILE", "Draw to .png, .svg, .pdf, or .html that turns.")
+        str | None, option("--output -o", "FILE", "Draw to .png, .svg, .pdf, .html that turns, or .gif of a mechanism.")
     ] = None,
     format: FormatOption = None,
     json: JsonOption = False,
@@ -62,9 +68,9 @@ def command(
 
     Joints that turn are cylinders along their axes, joints that slide are boxes with their stroke; frames are x red,
     y green, z blue. An .html is one page that needs no network: the arm turns with the mouse and has a slider for
-    each joint, in the branches of a hand or another tree; a mechanism has one along its motion. Without --output a
-    stick figure is drawn as text; --json has its corners. `robokin dof NAME --plot FILE` draws a mechanism with
-    another drive, or the paths of points.
+    each joint, in the branches of a hand or another tree; a mechanism is moved by its drive, and --point traces a
+    point of a link. Without --output a stick figure is drawn as text; --json has its corners. `robokin path --plot`
+    draws an arm that moves.
 
     The status is 3 when the target cannot be reached; the nearest configuration is then drawn.
 
@@ -78,6 +84,7 @@ def command(
         robokin plot human-hand --q pinch
         robokin plot human-hand --tip index --ik 150,30,-60 -o finger.html
         robokin plot bennett -o bennett.html
+        robokin plot four-bar --point coupler:3,4 -o four-bar.gif
     """
     from dataclasses import replace
 
@@ -93,15 +100,19 @@ def command(
     kind = output_format(format, json)
     if output is not None and kind is not None:
         raise InputError("--output draws a picture by the file's ending, expected no --format and no --json")
-    ending = picture_ending(output, "--output") if output is not None else ""
     eye = _view(view)
     loaded = description.anything(robot, way_of(mode))
     if isinstance(loaded, Mechanism):
+        if output is None and (drive or point):
+            raise InputError(f"{'--drive' if drive else '--point'} is about a motion, expected --output with it")
         for option, value in (("--q", q), ("--ik", ik), *target.texts.items(), ("--frames", frames)):
             if value:
-                raise InputError(f"{option} is for robots, expected none for a mechanism: `robokin dof` has --drive")
-        _draw_mechanism(loaded, description.over(loaded.units), kind, output, eye)
+                raise InputError(f"{option} is for robots, expected none for a mechanism, which --drive moves")
+        _draw_mechanism(loaded, description, kind, output, eye, drive, point or [], description.words(robot))
         return DONE
+    ending = picture_ending(output, "--output") if output is not None else ""
+    if drive or point:
+        raise InputError(f"{'--drive' if drive else '--point'} is for mechanisms, expected one of those")
     model = expect_jointed(robot, loaded)
     units = description.over(model.units)
     given, name = _configurations(q, model, units)
@@ -116,7 +127,7 @@ def command(
     if not wanted.postures:
         home, name = default_configuration(model)
         wanted = replace(wanted, postures=given_postures(model, units, [home]))
-    scene = scene_of(model, units, wanted, name, eye, frames, "--q")
+    scene = replace(scene_of(model, units, wanted, name, eye, frames, "--q"), words=description.words(robot))
     for note in wanted.notes:
         say(note)
     drawn = arms_written(kind or "table", scene, wanted) if output is None else [arm_picture(scene, ending[1:])]
@@ -142,24 +153,33 @@ def _configurations(q: list[str] | None, model: Robot | Tree, units: Units) -> t
 
 
 def _draw_mechanism(
-    mechanism: Mechanism, units: Units, kind: str | None, output: str | None, eye: tuple[float, float] | None
-) -> None:
+    mechanism: Mechanism, description: DescriptionOptions, kind: str | None, output: str | None,
+    eye: tuple[float, float] | None, drive: str | None, points: list[str], words: str,
+) -> None:  # fmt: skip
     """Write a mechanism's picture, or what it shows."""
     from pathlib import Path
 
+    from robokin.cli.mechanism_points import typed_point
+    from robokin.mobility.point_paths import paths_of
     from robokin.pictures.drawn_mechanism import check_drawable, motion_to_draw, picture_of
     from robokin.pictures.mechanism_scene import mechanism_scene
     from robokin.reports.picture_report import mechanism_written
     from robokin.tables.sink import sink
 
+    units = description.over(mechanism.units)
     check_drawable(mechanism, output, "--output")
     if output is None:
         drawn: Iterable[bytes] = mechanism_written(kind or "table", mechanism_scene(mechanism, None, None, units, eye))
     else:
-        moved, note = motion_to_draw(mechanism)
+        followed = [typed_point(text, mechanism, units) for text in points]
+        moved, note = motion_to_draw(mechanism, drive)
+        if note and (drive or followed):
+            raise InputError(note)
+        paths = paths_of(moved, followed) if moved is not None else None
+        ending = Path(output).suffix.lower()
+        drawn = [picture_of(mechanism, moved, paths, units, ending, eye, note if ending == ".gif" else "", words)]
         if note:
             say(f"drawn as it stands: {note}")
-        drawn = [picture_of(mechanism, moved, None, units, Path(output).suffix.lower(), eye)]
     with sink(output) as stream:
         stream.writelines(drawn)
 
