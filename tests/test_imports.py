@@ -33,8 +33,8 @@ CALCULATING = [
     "kernel", "jobs", "assembly", "kinematics", "inverse", "workspace", "mobility", "derivation", "grading",
 ]  # fmt: skip
 HOMES = {
-    "yaml": "formats", "typer": "cli", "rich": "reports", "matplotlib": "pictures", "PIL": "pictures", "pyarrow": "tables", "dask": "jobs",
-    "distributed": "jobs",
+    "yaml": "formats", "typer": "cli", "rich": "reports", "matplotlib": "pictures", "PIL": "pictures",
+    "pyarrow": "tables", "dask": "jobs", "distributed": "jobs",
 }  # fmt: skip
 
 ONE_NAME_EACH = {"__init__.py", "__main__.py"}

@@ -67,11 +67,11 @@ def arm_page(scene: Scene) -> bytes:
         ],
         "shown": scene.frames,
         "bars": [_bar(bar, scale) for bar in scene.arm.bars],
-        "palms": [[palm.body, _short(palm.corners * scale)] for palm in scene.arm.palms],
+        "palms": [[palm.body, short_numbers(palm.corners * scale)] for palm in scene.arm.palms],
         "width": scene.arm.length * LINK * scale,
         "size": scene.arm.length * scale,
         "forked": scene.arm.forked,
-        "box": _short(np.array([low, high]) * scale),
+        "box": short_numbers(np.array([low, high]) * scale),
         "view": list(scene.view),
         "colours": COLOURS | {"cross": CROSS},
         "pale": [*PALE, PALE_PALM],
@@ -128,12 +128,12 @@ def _path(scene: Scene) -> dict[str, Any] | None:
     if track is None:
         return None
     factors = _factors(scene)
-    q = _digits(track.q / factors, ROW_DIGITS)
+    q = short_numbers(track.q / factors, ROW_DIGITS)
     q[0], q[-1] = in_units(track.q[0], factors).tolist(), in_units(track.q[-1], factors).tolist()
     return {
-        "t": _digits(track.t, ROW_DIGITS),
+        "t": short_numbers(track.t, ROW_DIGITS),
         "q": q,
-        "rates": None if track.rates is None else _digits(track.rates / factors, DIGITS),
+        "rates": None if track.rates is None else short_numbers(track.rates / factors),
         "timed": track.timed,
         "seconds": track.seconds,
         "marks": [list(mark) for mark in track.marks],
@@ -141,14 +141,11 @@ def _path(scene: Scene) -> dict[str, Any] | None:
 
 
 def _bar(bar: Bar, scale: float) -> list[Any]:
-    ends = [_short(bar.a * scale), _short(bar.b * scale), _short(bar.across)]
+    ends = [short_numbers(bar.a * scale), short_numbers(bar.b * scale), short_numbers(bar.across)]
     return [bar.role, *bar.bodies, *ends, float(f"{bar.width * scale:.{DIGITS}g}"), bar.sides]
 
 
-def _short(values: Array) -> Any:
-    return _digits(values, DIGITS)
-
-
-def _digits(values: Array, count: int) -> Any:
+def short_numbers(values: Array, count: int = DIGITS) -> Any:
+    """Numbers as a page's data, in lists and to so many significant digits."""
     digits = [float(f"{value:.{count}g}") + 0.0 for value in np.ravel(values).tolist()]
     return np.reshape(digits, np.shape(values)).tolist()

@@ -28,15 +28,20 @@ ROTVEC = numbers("The rotation vector: axis times angle [angle].", 3)
 QUATERNION = numbers("The rotation as a quaternion w, x, y, z of length 1 [1].", 4)
 POSITION = numbers("The origin x, y, z [length].", 3)
 
+ON_DEMAND = {
+    "quaternion_xyzw": numbers("The quaternion as x, y, z, w [1].", 4),
+    "abc": numbers("KUKA's angles A, B, C [angle].", 3),
+    "wpr": numbers("FANUC's angles W, P, R [angle].", 3),
+}
+"""Orientations that are there when --as asks for them."""
+
 POSE = record(
     "A pose of the end effector in the world.",
     {"matrix": matrix("The pose"), "position": POSITION, "rpy": RPY, "quaternion": QUATERNION},
     {
         "euler": EULER,
-        "quaternion-xyzw": numbers("The quaternion as x, y, z, w [1].", 4),
         "rotvec": ROTVEC,
-        "abc": numbers("KUKA's angles A, B, C [angle].", 3),
-        "wpr": numbers("FANUC's angles W, P, R [angle].", 3),
+        **ON_DEMAND,
     },
 )
 FRAMES = items(
@@ -95,21 +100,39 @@ def frame() -> Schema:
         name: numbers(f"Column {name} of the rotation: the frame's {axis} axis [1].", 3)
         for name, axis in zip("nsa", "xyz", strict=True)
     }
-    document = record(
-        "A transform.",
+    forms: dict[str, Schema] = {
+        "matrix": matrix("The transform"),
+        **columns,
+        "p": numbers("Column p: the origin [length].", 3),
+        "position": POSITION,
+        "rpy": RPY,
+        "euler": EULER,
+        "quaternion": QUATERNION,
+        "axis_angle": axis_angle,
+        "rotvec": ROTVEC,
+    }
+    screw = record(
+        "The screw motion from the first frame to the second, in the coordinates of both.",
         {
-            **head("expression", text("The transform expression.")),
-            "matrix": matrix("The transform"),
-            **columns,
-            "p": numbers("Column p: the origin [length].", 3),
-            "position": POSITION,
-            "rpy": RPY,
-            "euler": EULER,
-            "quaternion": QUATERNION,
-            "axis_angle": axis_angle,
-            "rotvec": ROTVEC,
+            "axis": maybe(numbers("The direction of the axis, a unit vector [1]", 3), "where nothing moves."),
+            "point": maybe(numbers("The place of the axis nearest to the origin [length]", 3), "of a translation."),
+            "angle": number("The turn about the axis, from 0 to half a turn [angle].", 0.0),
+            "translation": number("The slide along the axis [length]."),
+            "pitch": maybe(number("The slide for each radian [length]"), "of a translation."),
         },
-        {"point": numbers("Where --point is taken to [length].", 3)},
+    )
+    document = record(
+        "A transform, and with --to the way from it to another.",
+        {**head("expression", text("The transform expression.")), **forms},
+        {
+            **ON_DEMAND,
+            "point": numbers("Where --point is taken to [length].", 3),
+            "to": record("The frame of --to.", {"expression": text("Its transform expression."), **forms}, ON_DEMAND),
+            "relative": record("The second frame in the first.", forms, ON_DEMAND),
+            "distance": number("From one origin to the other [length].", 0.0),
+            "screw": screw,
+            "along": word("How the frame moves in a picture and in rows.", "line", "screw"),
+        },
     )
     return documents("frame", "A transform in every form; `id` repeats the expression.", [], transform=document)
 
