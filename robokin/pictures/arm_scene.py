@@ -12,7 +12,7 @@ from robokin.model import Robot, Tree
 from robokin.pictures.arm import ArmShape, arm_of, body_frames, default_configuration, lines_of, plane_of
 from robokin.pictures.arm_bars import ends_of
 from robokin.pictures.arm_faces import BETWEEN, COLOURS, POSTURES
-from robokin.pictures.arm_track import ArmTrack, postures_at
+from robokin.pictures.arm_track import ArmTrack, rows_of
 from robokin.pictures.skeleton import FrameMark
 from robokin.units import Units
 
@@ -107,7 +107,7 @@ class Scene:
                     points.append(T[:3, 3] + reach * np.vstack([np.zeros(3), T[:3, :3].T]))
         if self.track is not None:
             # The whole arm on its way, by some rows.
-            for k in postures_at(len(self.track.t), SEEN):
+            for k in rows_of(len(self.track.t), SEEN):
                 frames = body_frames(self.arm.robot, self.track.q[k])
                 points += [np.array(ends_of(bar, frames)) + s * bar.width for bar in self.arm.bars for s in (-1.0, 1.0)]
             points.append(self.track.places)

@@ -10,8 +10,8 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.inverse.joint_paths import Path
 
-MOST_ROWS = 181
-"""Rows that a picture keeps at most: more are thinned out, so that a page stays small."""
+MOST_ROWS, MOST_VALUES = 181, 720
+"""Rows that a picture keeps at most, and joint values in them: more are thinned out, so that a page stays small."""
 
 PLAYED = 4.0
 """Seconds in which a path without a duration is played."""
@@ -37,7 +37,7 @@ class ArmTrack:
 def track_of(path: Path, words: Sequence[str] = ()) -> ArmTrack:
     """The track of a path; words: what is said of each of its events, by default the event's own words."""
     count = len(path.t)
-    kept = np.unique(np.round(np.linspace(0, count - 1, min(MOST_ROWS, count))).astype(int))
+    kept = np.array(rows_of(count, min(MOST_ROWS, max(MOST_VALUES // path.robot.n, 2))))
     timed = path.duration is not None
     told = [*words[: len(path.events)], *(event.words for event in path.events[len(words) :])]
     rows = [int(np.argmin(np.abs(path.s[kept] - event.fraction))) for event in path.events]
@@ -47,7 +47,7 @@ def track_of(path: Path, words: Sequence[str] = ()) -> ArmTrack:
     )  # fmt: skip
 
 
-def postures_at(count: int, most: int) -> list[int]:
+def rows_of(count: int, most: int) -> list[int]:
     """Up to `most` of `count` rows, evenly, with the first and the last."""
     rows: list[int] = np.unique(np.round(np.linspace(0, count - 1, min(most, count))).astype(int)).tolist()
     return rows

@@ -11,7 +11,7 @@ from robokin.inverse.joint_paths import Path
 from robokin.pictures.arm import body_frames
 from robokin.pictures.arm_faces import TRACE, arm_faces, frame_faces
 from robokin.pictures.arm_scene import Posture, Scene, eye_axes
-from robokin.pictures.arm_track import postures_at, track_of
+from robokin.pictures.arm_track import rows_of, track_of
 from robokin.pictures.drawn_arm import AskedPostures, arm_picture, scene_of
 from robokin.pictures.film import FilmStage, Shot, film, film_rows
 from robokin.units import Units
@@ -45,7 +45,7 @@ def _scene(
     elif page:
         postures = [Posture(path.q[0], "start"), Posture(path.q[-1], "end", ghost=True)]
     else:
-        rows = postures_at(last + 1, GHOSTS)
+        rows = rows_of(last + 1, GHOSTS)
         names = {0: "start", last: "end"}
         postures = [Posture(path.q[row], names.get(row, ""), ghost=row < last) for row in rows]
     scene = scene_of(path.robot, units, AskedPostures(tuple(postures), notes=tuple(notes)), "", view, False, "--from")

@@ -2,9 +2,7 @@
 function link() {
   const parts = onPath() ? [`t=${typed([data.path.t[motion.row()]])}`] : [`q=${typed(q)}`, `units=${data.length},${data.angle}`];
   if (azimuth !== data.view[0] || elevation !== data.view[1]) parts.push(`view=${typed([azimuth, elevation])}`);
-  const address = `${location.href.split("#")[0]}#${parts.join("&")}`;
-  try { history.replaceState(null, "", address); } catch (error) { /* a page without an address of its own */ }
-  return address;
+  return `${location.href.split("#")[0]}#${parts.join("&")}`;
 }
 // What the address asks for; what it does not say right is left out, with a word.
 function opened() {

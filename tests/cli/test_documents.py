@@ -65,6 +65,8 @@ COMMANDS = [
     ["dof", "--links", "7", "--joints", "6R", "--space", "spatial"],
     ["dof", "slider-crank", "--trace", "3", "--point", "rod:1,0"], ["dof", "bennett", "--trace", "2"],
     ["frame", "Trans(1,2,3) Rot(z,90)"], ["frame", "Rot(x,30)", "--point", "1,2,3", "--inverse"], ["frame", ""],
+    ["frame", "Rot(x,30)", "--to", "Trans(1,2,3)"], ["frame", "", "--to", ""],
+    ["frame", "", "--to", "Trans(1,0,0) Rot(z,30)", "--along", "screw", "--as", "quaternion-xyzw"],
     ["jacobian", "puma560", "--q", "home"], ["jacobian", "planar2r", "--q", "0,0", "--frame", "tool"],
     ["jacobian", "scara", "--q", "0,0,0,0", "--q", "10,20,30,40"],
     ["jacobian", "panda", "--q", "0,0,0,-90,0,90,0", "--task", "position"],
@@ -250,9 +252,10 @@ def test_every_key_of_a_schema_is_in_some_document(command, check):
     assert promised - written <= ELSEWHERE.get((command, check), set())
 
 
-ORIENTATIONS = {"quaternion-xyzw", "rotvec", "abc", "wpr"}
+ORIENTATIONS = {"quaternion_xyzw", "rotvec", "abc", "wpr"}
 ELSEWHERE = {
     ("fk", None): ORIENTATIONS,
+    ("frame", None): ORIENTATIONS,
     ("show", None): {"joint", "ratio", "beside"},  # of couplings, which test_trees and test_couplings have
     ("convert", None): {"joint", "ratio", "beside"},
     ("ik", None): {"jump"},  # of files, which test_ik_near_previous has

@@ -177,3 +177,93 @@ def test_a_matrix_in_print_is_made_a_rotation_with_a_note(call):
 )
 def test_what_is_no_transform(call, arguments, fragments):
     refused(call("frame", *arguments), *fragments)
+
+
+# The way to another frame --------------------------------------------------------------------------------------------
+
+FIRST, SECOND = "Trans(1,0,0) Rot(x,20)", "Trans(0,2,1) Rot(z,90)"
+
+
+def test_the_way_to_another_frame_in_the_document(call):
+    document = call("frame", FIRST, "--to", SECOND, "--json").json
+    assert list(document) == [*KEYS, "to", "relative", "distance", "screw", "along"]
+    for key in KEYS[4:]:
+        assert document[key] == call("frame", FIRST, "--json").json[key]
+        assert document["to"][key] == call("frame", SECOND, "--json").json[key]
+        between = call("frame", f"Inv({FIRST}) {SECOND}", "--json").json[key]
+        if key not in ("axis_angle",):
+            assert np.allclose(document["relative"][key], between, atol=1e-12)
+    assert document["distance"] == pytest.approx(6**0.5)
+    assert document["screw"]["angle"] == pytest.approx(document["relative"]["axis_angle"]["angle"])
+    assert document["along"] == "line"
+
+
+def test_a_quarter_turn_about_a_line_and_along_it(call):
+    """Rot(z,90) takes (1,0,0) to (0,2,0) about (-0.5,0.5): (1.5,-0.5) turns to (0.5,1.5); and up by 1."""
+    words = ("frame", "Trans(1000,0,0)", "--to", "Trans(0,2000,1000) Rot(z,90)", "--length", "mm")
+    screw = call(*words, "--json").json["screw"]
+    assert screw["axis"] == [0, 0, 1]
+    assert np.allclose(screw["point"], [-500, 500, 0])
+    assert (screw["angle"], screw["translation"]) == (pytest.approx(90), pytest.approx(1000))
+    assert screw["pitch"] == pytest.approx(2000 / np.pi)
+
+
+@pytest.mark.parametrize("along", ["line", "screw"])
+def test_rows_go_from_one_frame_to_the_other(call, along, tmp_path):
+    words = ("frame", FIRST, "--to", SECOND, "--along", along, "--steps", "4")
+    rows = call(*words, "-f", "csv")
+    assert rows.numbers_of("t") == [0.0, 0.25, 0.5, 0.75, 1.0]
+    call(*words, "-o", tmp_path / "way.npy")
+    T = np.load(tmp_path / "way.npy")
+    assert T.shape == (5, 4, 4)
+    document = call(*words, "--json").json
+    assert np.allclose(T[0], document["matrix"], atol=0)
+    assert np.allclose(T[-1], document["to"]["matrix"], atol=0)
+    assert np.allclose([rows.numbers_of(axis)[2] for axis in "xyz"], T[2, :3, 3])
+    middle = 0.5 * (T[0, :3, 3] + T[-1, :3, 3])
+    assert np.allclose(T[2, :3, 3], middle) == (along == "line")
+    # Both turn evenly about one direction.
+    steps = [T[k, :3, :3].T @ T[k + 1, :3, :3] for k in range(4)]
+    assert np.allclose(steps, steps[0], atol=1e-12)
+
+
+def test_without_a_turn_and_by_half_a_turn(call):
+    screw = call("frame", "Rot(x,20)", "--to", "Trans(0,3,4) Rot(x,20)", "--json").json["screw"]
+    assert (screw["point"], screw["pitch"], screw["translation"]) == (None, None, pytest.approx(5))
+    assert call("frame", "", "--to", "", "--json").json["screw"]["axis"] is None
+    assert "same frame" in call("frame", "", "--to", "").text
+    assert "a translation" in call("frame", "", "--to", "Trans(1,2,3)").text
+    answer = call("frame", "", "--to", "Rot(y,180)", "--json")
+    assert (answer.status, answer.json["screw"]["axis"]) == (0, [0, 1, 0])
+    assert "half a turn" in answer.err
+
+
+@pytest.mark.parametrize("ending", ["html", "gif", "svg"])
+def test_the_way_is_drawn(call, tmp_path, ending):
+    if ending != "html":
+        pytest.importorskip("matplotlib")
+    path = tmp_path / f"way.{ending}"
+    answer = call("frame", FIRST, "--to", SECOND, "--along", "screw", "--plot", path)
+    assert (answer.status, answer.err) == (0, "")
+    assert path.read_bytes().startswith({"html": b"<!DOCTYPE html>", "gif": b"GIF89a", "svg": b"<?xml"}[ending])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "fragments"),
+    [
+        (["--along", "screw"], ["--along is about the way", "expected --to"]),
+        (["--steps", "3"], ["--steps is about the way"]),
+        (["--plot", "a.html"], ["--plot is about the way"]),
+        (["--to", SECOND, "--along", "arc"], ["--along", "expected line or screw"]),
+        (["--to", SECOND, "--steps", "0"], ["--steps", "from 1"]),
+        (["--to", SECOND, "--plot", "a.bmp"], ["--plot: found 'a.bmp'", ".gif"]),
+        (["--to", SECOND, "--point", "1,2,3"], ["--point and --to exclude"]),
+        (["--to", "Trns(1,2,3)"], ["--to:", "'Trns'"]),
+        (["--to", "Trans(1e200,0,0)"], ["too far away"]),
+        (["--to", "Trans(1e9,0,0)", "--plot", "a.html"], ["too far away for a picture"]),
+    ],
+)
+def test_what_is_no_way(call, arguments, fragments, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    refused(call("frame", FIRST, *arguments), *fragments)
+    assert not list(tmp_path.iterdir())
