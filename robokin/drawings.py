@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import pathlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from robokin.errors import InputError
 from robokin.expected import described, expect_choice, expect_finite, expect_flag, expect_kind
+from robokin.inverse.joint_paths import Path
 from robokin.inverse.solutions import Result
 from robokin.model import Mechanism, Robot, Tree, expect_robot
 from robokin.units import Units
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from robokin.pictures.arm_scene import Scene
     from robokin.pictures.drawn_arm import AskedPostures
 
-KINDS = ("svg", "png", "pdf", "html", "text")
+KINDS = ("svg", "png", "pdf", "html", "text", "gif")
 
 FRAME = 480
 """Height in pixels of the frame in which a notebook shows a page that turns."""
@@ -29,14 +30,14 @@ FRAME = 480
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """A picture: `kind` is svg, png, pdf, html or text, `data` the bytes of such a file."""
+    """A picture: `kind` is svg, png, pdf, html, text or gif, `data` the bytes of such a file."""
 
     kind: str
     data: bytes
 
-    def save(self, path: str | Path) -> None:
+    def save(self, path: str | pathlib.Path) -> None:
         """Write the picture to a file, whose name ends with the picture's kind (.txt for text)."""
-        file = Path(expect_kind(path, (str, Path), "path", "the path of a file"))
+        file = pathlib.Path(expect_kind(path, (str, pathlib.Path), "path", "the path of a file"))
         ending = ".txt" if self.kind == "text" else f".{self.kind}"
         if file.suffix.lower() != ending:
             raise InputError(f"path: found '{file}', expected a name that ends with {ending}: this is what was drawn")
@@ -66,7 +67,7 @@ class Drawing:
 
 
 def draw(
-    what: Robot | Tree | Mechanism | Result,
+    what: Robot | Tree | Mechanism | Result | Path,
     q: ArrayLike | None = None,
     kind: str = "svg",
     *,
@@ -74,10 +75,11 @@ def draw(
     view: tuple[float, float] | None = None,
     units: Units | None = None,
 ) -> Drawing:
-    """A picture of a robot or a tree, of all solutions that `solve_ik` found, or of a mechanism.
+    """A picture of a robot or a tree, of all solutions that `solve_ik` found, of a mechanism, or of a path.
 
     q: (n,) or (m, n) [rad | m] the configurations of a robot or a tree, of which all but the first are pale; by
-    default its pose `home`, else zeros. kind: svg, png, pdf (which need matplotlib), html (a page that turns) or text.
+    default its pose `home`, else zeros. kind: svg, png, pdf (which need matplotlib), html (a page that turns) or text,
+    and of what moves, a mechanism or a path, gif (which needs it, too); a path is not drawn as text.
     `frames` draws a frame after each row of the table; view: azimuth and elevation [°] of the eye. Raises InputError.
     """
     expect_choice(kind, KINDS, "kind")
@@ -88,15 +90,23 @@ def draw(
         if q is not None:
             raise InputError("q: is for robots, expected none for a mechanism")
         return Drawing(kind, _mechanism(what, kind, eye, units or what.units))
+    from robokin.pictures.picture_files import ENDINGS, MOVING, picture_ending
+
+    if isinstance(what, Path):
+        from robokin.pictures.drawn_path import path_picture
+
+        if q is not None or frames:
+            raise InputError(f"{'frames' if q is None else 'q'}: is for robots, expected none for a path")
+        picture_ending(f"picture.{kind}", "kind", MOVING)
+        return Drawing(kind, path_picture(what, units or what.robot.units, kind, view=eye))
     scene, _ = scene_with(what, q, expect_flag(frames, "frames"), eye, units)
     if kind == "text":
         from robokin.pictures.arm_text import arm_text
 
         return Drawing(kind, arm_text(scene).encode())
     from robokin.pictures.drawn_arm import arm_picture
-    from robokin.pictures.picture_files import picture_ending
 
-    picture_ending(f"picture.{kind}", "kind")
+    picture_ending(f"picture.{kind}", "kind", ENDINGS)
     return Drawing(kind, arm_picture(scene, kind))
 
 

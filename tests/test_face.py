@@ -435,6 +435,12 @@ def test_a_drawing_is_what_the_shell_draws(tmp_path):
     assert "sandbox" in drawn._repr_html_()
     assert robokin.draw(robokin.solve_ik(PUMA, T), kind="html").data.count(b"elbow") > 1
     assert str(robokin.draw(FOUR_BAR, kind="text")).strip()
+    path = robokin.interpolate_joints(PLANAR, [0.1, 0.2], [0.8, 1.0], 20)
+    assert b'"path":{' in robokin.draw(path, kind="html").data
+    with pytest.raises(InputError, match="q: is for robots"):
+        robokin.draw(path, [0.1, 0.2], kind="html")
+    with pytest.raises(InputError, match=r"a \.gif is of what moves"):
+        robokin.draw(PLANAR, kind="gif")
 
 
 def test_symbols_are_texts_and_sources():

@@ -39,16 +39,18 @@ def _scene(
     path: Path, units: Units, page: bool, notes: Sequence[str], view: tuple[float, float] | None, words: str
 ) -> Scene:
     """The start and some rows as ghosts, the end solid; on a page that moves, the start solid and the end a ghost."""
-    last = len(path.t) - 1
+    last, end = len(path.t) - 1, "end" if path.complete else "as far as it can be followed"
     if not last:
         postures = [Posture(path.q[0])]
     elif page:
-        postures = [Posture(path.q[0], "start"), Posture(path.q[-1], "end", ghost=True)]
+        postures = [Posture(path.q[0], "start"), Posture(path.q[-1], end, ghost=True)]
     else:
         rows = rows_of(last + 1, GHOSTS)
-        names = {0: "start", last: "end"}
+        names = {0: "start", last: end}
         postures = [Posture(path.q[row], names.get(row, ""), ghost=row < last) for row in rows]
-    scene = scene_of(path.robot, units, AskedPostures(tuple(postures), notes=tuple(notes)), "", view, False, "--from")
+    # What is said of an event stands at its mark, where there is a way to mark.
+    told = tuple(notes[len(path.events) :] if last else notes)
+    scene = scene_of(path.robot, units, AskedPostures(tuple(postures), notes=told), "", view, False, "--from")
     seconds = "" if path.duration is None else f", {path.duration:.6g} s"
     far = "" if path.complete else f", followed up to {path.fraction:.4g}"
     return replace(scene, subtitle=WAYS[path.kind] + seconds + far, track=track_of(path, notes), words=words)

@@ -25,9 +25,14 @@ const rows = (T) => [0, 4, 8, 12].map((i) => T.slice(i, i + 4));
 // Numbers as a command takes them: to 12 digits, without the dust of sums.
 const typed = (values) => values.map((value) => String(+(+value).toPrecision(12) || 0)).join(",");
 const matrixText = (T) => `[${rows(T).map((row) => `[${typed(row)}]`).join(",")}]`;
-// A command line in the element of that name, broken between its words.
+// A command line in the element of that name, broken between its words and after commas.
 function showCommand(text) {
-  $("command").replaceChildren(...text.split(" ").flatMap((word) => [Object.assign(document.createElement("span"), {textContent: word}), " "]));
+  $("command").replaceChildren();
+  text.split(" ").forEach((word, k) => {
+    if (k) $("command").append(" ");
+    const span = make("span", $("command"));
+    word.split(/(?<=,)/).forEach((part, i) => { if (i) make("wbr", span); span.append(part); });
+  });
 }
 // A table of a pose: position and roll, pitch, yaw; what is returned fills it.
 function poseTable(body) {

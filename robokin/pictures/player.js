@@ -15,8 +15,8 @@ function player({times, seconds, closed = false, swing = false, loop = false, sh
   const speed = make("select", make("label", box, "speed "), "", {id: "speed"});
   for (const value of SPEEDS) make("option", speed, "×" + value, {value});
   // What is very long or very short starts at a speed that can be watched.
-  speed.value = SPEEDS.find((value) => whole / value <= 20 && whole / value >= 1) ?? (whole > 1 ? 10 : 0.1);
-  if (whole <= 20 && whole >= 1) speed.value = 1;
+  if (whole > 20) speed.value = SPEEDS.find((value) => whole / value <= 20) ?? 10;
+  else speed.value = SPEEDS.findLast((value) => value <= 1 && whole / value >= 1) ?? 0.1;
   const again = make("input", make("label", box), "", {type: "checkbox", id: "loop", checked: loop});
   again.after(" loop");
   slider.setAttribute("aria-label", "time"); button.setAttribute("aria-keyshortcuts", "Space");

@@ -223,3 +223,29 @@ def test_slides_want_limits_of_their_own(call):
     words = ["path", "scara", "--from", "0,60,100,0", "--to", "40,30,50,90", "--max-velocity"]
     refused(call(*words, "90"), "found one value for joints that turn and slide, expected 4 values")
     assert max(call(*words, "90,90,25,90", "--json").json["fastest"]["velocity"]) > 25
+
+
+@pytest.mark.parametrize("ending", ["html", "gif", "svg"])
+def test_a_path_is_drawn_beside_its_answer(call, tmp_path, ending):
+    if ending != "html":
+        pytest.importorskip("matplotlib")
+    path = tmp_path / f"path.{ending}"
+    words = ["path", "planar2r", "--from", "30,40", "--xy", "-0.9,0.1", "--line", "--steps", "12"]
+    answer = call(*words, "--plot", path)
+    assert answer == call(*words)
+    assert path.read_bytes().startswith({"html": b"<!DOCTYPE html>", "gif": b"GIF89a", "svg": b"<?xml"}[ending])
+    before = path.read_bytes()
+    call(*words, "--plot", path, "--json")
+    assert path.read_bytes() == before
+
+
+def test_a_path_that_ends_early_is_drawn_as_far_as_it_goes(call, tmp_path):
+    answer = call("path", "planar2r", "--from", "10,20", "--xy", "9,9", "--line", "--plot", tmp_path / "a.html")
+    assert answer.status == 3
+    assert b"as far as it can be followed" in (tmp_path / "a.html").read_bytes()
+
+
+def test_a_picture_of_no_kind_is_refused_before_the_work(call, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    refused(call(*FROM, "--to", END, "--plot", "a.mp4"), "--plot: found 'a.mp4'", ".png, .svg, .pdf, .html or .gif")
+    assert not list(tmp_path.iterdir())

@@ -203,7 +203,7 @@ def test_plot_draws_mechanisms(call, tmp_path):
     assert answer.status == 0
     assert page_data(tmp_path / "d.html")["paths"]
     for words, said in ((("four-bar", "--q", "1"), "--q is for robots"), (("car",), "is a wheeled base"),
-                        (("four-bar", "-o", "x.gif"), ".png, .svg, .pdf or .html")):  # fmt: skip
+                        (("four-bar", "-o", "x.bmp"), ".png, .svg, .pdf, .html or .gif")):  # fmt: skip
         answer = call("plot", *words)
         assert answer.status == 2
         assert said in answer.err
@@ -268,3 +268,45 @@ def test_a_finger_whose_joints_hang_together_is_drawn_and_notes_are_said_once(ca
     (tree,) = answer.json["trees"]
     assert [joint["name"] for joint in tree["joints"]] == ["pip", "dip"]
     assert call("plot", path, "--q", "0.4,0.3").status == 2
+
+
+@pytest.mark.parametrize("ending", ["html", "gif"])
+def test_a_mechanism_moves_by_its_drive_and_a_point_is_traced(call, tmp_path, ending):
+    if ending == "gif":
+        pytest.importorskip("matplotlib")
+    path = tmp_path / f"bar.{ending}"
+    answer = call("plot", "four-bar", "--drive", "D", "--point", "coupler:3,4", "-o", path)
+    assert (answer.status, answer.out, answer.err) == (0, b"", "")
+    if ending == "html":
+        data = page_data(path)
+        assert data["labels"][data["lead"]] == "D"
+        assert len(data["paths"]) == 1
+        assert data["command"] == f"robokin dof four-bar --trace {len(data['poses'])} --drive D"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["four-bar", "--drive", "D"], ["--drive is about a motion", "expected --output"]),
+        (["four-bar", "--drive", "Z", "-o", "a.html"], ["unknown joint 'Z'"]),
+        (["four-bar", "--point", "arm:1,2", "-o", "a.html"], ["--point: found the unknown link 'arm'"]),
+        (["puma560", "--drive", "D", "-o", "a.html"], ["--drive is for mechanisms"]),
+        (["puma560", "-o", "a.gif"], ["--output: found 'a.gif'", "a .gif is of what moves"]),
+        (["shaky-triangle", "-o", "a.gif"], ["a .gif shows a motion", "only trembles"]),
+        (["shaky-triangle", "--drive", "A", "-o", "a.html"], ["only trembles"]),
+    ],
+)
+def test_what_of_a_motion_cannot_be_drawn(call, words, said, tmp_path, monkeypatch):
+    if any(word.endswith("gif") for word in words):
+        pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    refused(call("plot", *words), *said)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_page_says_the_command_line_with_its_options(call, tmp_path):
+    path = tmp_path / "finger.html"
+    assert call("plot", "human-hand", "--tip", "index", "-o", path).status == 0
+    assert page_data(path)["words"] == "human-hand --tip index"
+    assert call("plot", "planar2r", "--set", "a2=0.5", "--angle", "rad", "-o", path).status == 0
+    assert page_data(path)["words"] == "planar2r --set a2=0.5"

@@ -106,7 +106,13 @@ def test_a_still_of_a_path_has_its_way_its_ends_and_what_happens():
     assert outside.events
     data = path_picture(outside, outside.robot.units, "svg", ["joint 5 leaves its limits there"])
     text = "\n".join(ElementTree.fromstring(data.decode()).itertext())
-    for word in ("1  start", "2  end", "joint 5 leaves its limits there", "joint by joint, 1 s, followed up to"):
+    said = (
+        "1  start",
+        "2  as far as it can be followed",
+        "joint 5 leaves its limits there",
+        "joint by joint, 1 s, fol",
+    )
+    for word in said:
         assert word in " ".join(text.split("\n")), word
     assert data.decode().count("#d0021b") >= 2
     assert data == path_picture(outside, outside.robot.units, "svg", ["joint 5 leaves its limits there"])

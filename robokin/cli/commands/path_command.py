@@ -85,6 +85,7 @@ def command(
         robokin path scara --from 0,60,100,0 --to 40,30,50,90 --json
         robokin path planar2r --from 0,10 --to 40,20 --to 20,80 --duration 3 --spline
         robokin path planar2r --from 30,40 --xy -0.9,0.1 --line --duration 2 -f csv
+        robokin path puma560 --from home --xyz -300,700,200 --line --plot line.html
     """
     from robokin.cli.configurations import typed_configurations
     from robokin.cli.targets import parse_place
