@@ -175,7 +175,7 @@ def test_every_robot_of_the_library_has_a_small_page():
     for name in library_names():
         robot = load_any(name, {})
         if isinstance(robot, Robot):
-            assert len(page_of(robot)) < 80_000
+            assert len(page_of(robot)) < 60_000
 
 
 def test_a_slider_ends_at_the_limits_and_at_half_a_turn_without_any():
