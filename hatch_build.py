@@ -28,6 +28,7 @@ KERNEL = f"robokin/kernel/_native.{'pyd' if WINDOWS else 'abi3.so'}"
 MODULE = [
     "module.c",
     "closed_forms.c",
+    "descents.c",
     "elimination.c",
     "number_text.c",
 ]

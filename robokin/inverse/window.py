@@ -18,7 +18,7 @@ from robokin.inverse.analysis import Analysis, General
 from robokin.inverse.elimination.complex_newton import complex_refine, on_the_way_out, regular, regular_and_distinct
 from robokin.inverse.elimination.loop import ComplexCandidates
 from robokin.inverse.elimination.loop_newton import determinants
-from robokin.inverse.elimination.native_elimination import native_elimination
+from robokin.inverse.elimination.native_elimination import candidates_at, native_elimination
 from robokin.inverse.elimination.splits import REAL
 from robokin.inverse.numeric.least_squares import descend
 from robokin.inverse.verify import CLOSES, VIRTUAL, Found, closing_distances, distinct, merged, verified
@@ -114,7 +114,7 @@ def _by_elimination(analysis: Analysis, T: Array, count: bool) -> tuple[Found, D
     assert six is not None
     assert loop is not None
     closing = loop.closing(T)
-    candidates, imaginary = solver.first.all_candidates(closing, complex_too=count)
+    candidates, imaginary = candidates_at(solver.first, loop, closing, complex_too=count)
     found = verified(loop, six.chain, TargetPoses(six.chain, T), closing, candidates, ROUNDED)
     found = distinct(found, six.chain.revolute, loop.size)
     tried = np.bincount(candidates.index, minlength=len(T))

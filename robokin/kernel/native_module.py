@@ -11,7 +11,7 @@ TYPE_CHECKING = False  # `typing` has the same, and takes a while to load
 if TYPE_CHECKING:
     from types import ModuleType
 
-INTERFACE = 4
+INTERFACE = 5
 """What the C code offers; one of another version, as an old build leaves it in the sources, is not used."""
 
 

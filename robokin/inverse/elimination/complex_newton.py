@@ -24,7 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.arrays import Array, Complex, Flags, Index
-from robokin.inverse.elimination.loop import Loop, columns_of, follow, twist_columns
+from robokin.inverse.elimination.loop import Loop, columns_of, follow, native_loop, twist_columns
+from robokin.kernel.native_kernel import native
 
 TURN = 2.0 * np.pi
 
@@ -76,6 +77,24 @@ def complex_refine(
     closing: (m, 4, 4) L6, real or complex; index: (s,) into closing; values: (s, 6) [rad | size].
     The residual [size and rad] is relative to the size of X's terms; it is infinite where the steps led nowhere.
     """
+    known = native_loop(loop)
+    if native is None or known is None:
+        return complex_refined_by_columns(loop, closing, index, values, steps)
+    numbers = np.ascontiguousarray(values, dtype=np.complex128).reshape(-1, 6).view(np.float64)
+    last = closing[index].astype(np.complex128).reshape(-1, 16).view(np.float64)
+    refined, residual = native.complex_refined(known, last, numbers, steps, STEP)
+    refined = refined.view(np.complex128)
+    flat = np.flatnonzero(residual < 0.0)
+    if len(flat):
+        # Where S has no inverse to the last digit a step is one of least squares.
+        refined[flat], residual[flat] = complex_refined_by_columns(loop, closing, index[flat], values[flat], steps)
+    return refined, residual
+
+
+def complex_refined_by_columns(
+    loop: Loop, closing: NDArray[Any], index: Index, values: NDArray[Any], steps: int
+) -> tuple[Complex, Array]:
+    """`complex_refine` in Python."""
     refined = np.array(values, dtype=np.complex128)
     residual = np.empty(len(refined))
     last = columns_of(closing)

@@ -27,8 +27,9 @@ import numpy as np
 
 from robokin.arrays import Array, Complex, Flags, Index
 from robokin.inverse.elimination.complex_newton import solved
-from robokin.inverse.elimination.loop import Loop, follow, twist_columns
+from robokin.inverse.elimination.loop import Loop, follow, native_loop, twist_columns
 from robokin.inverse.elimination.loop_newton import closing_at
+from robokin.kernel.native_kernel import native
 
 ROOTS = 2
 """u = s²: at the end of a path on which two solutions meet q is then a power series in s."""
@@ -156,10 +157,27 @@ def track(loop: Loop, start: Points, target: Points, values: Complex, bend: Comp
     """
     count = values.shape[1]
     bend = np.ones(count, dtype=np.complex128) if bend is None else bend
-    ends = PathEnds(values.astype(np.complex128), np.ones(count), np.zeros(count), np.zeros(count, dtype=bool))
     # Of the two quaternions of the target's rotation the one nearer to the start's makes the shorter way.
     sign = np.where((start.r.conj() * target.r).sum(axis=0).real < 0.0, -1.0, 1.0)
     target = Points(target.r * sign, target.p)
+    known = native_loop(loop)
+    if native is None or known is None:
+        return tracked_by_columns(loop, start, target, values, bend)
+    rows = [_as_rows(np.concatenate([point.r, point.p])) for point in (start, target)]
+    to, left = native.tracked(known, *rows, _as_rows(bend[None]), _as_rows(values))
+    u, speed, lost = left.T
+    return PathEnds(np.ascontiguousarray(to.view(np.complex128).T), u, speed, lost > 0.0)
+
+
+def _as_rows(columns: Complex) -> Array:
+    """Complex columns (k, s) as rows (s, 2 k) of real and imaginary parts."""
+    return np.ascontiguousarray(columns.T, dtype=np.complex128).view(np.float64)
+
+
+def tracked_by_columns(loop: Loop, start: Points, target: Points, values: Complex, bend: Complex) -> PathEnds:
+    """`track` in Python, for quaternions of the target that are nearer to the start's."""
+    count = values.shape[1]
+    ends = PathEnds(values.astype(np.complex128), np.ones(count), np.zeros(count), np.zeros(count, dtype=bool))
     for first in range(0, count, BLOCK):
         part = np.arange(first, min(first + BLOCK, count))
         # A step that leads astray may overflow: it is not accepted.

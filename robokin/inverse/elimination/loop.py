@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 
 from robokin.arrays import Array, Complex, Flags, Index
 from robokin.kernel.chain import Chain, chain_size
+from robokin.kernel.facts import fact
+from robokin.kernel.native_kernel import native
 from robokin.kernel.sweep import skew_part, sweep, twists
 from robokin.spatial import invert
 
@@ -77,6 +79,16 @@ def loop_of(chain: Chain) -> Loop:
     constants = chain.constants.copy()
     constants[:, :3, 3] /= size
     return Loop(chain.revolute, constants[1:6], constants[0], constants[6], size)
+
+
+@fact
+def native_loop(loop: Loop) -> object | None:
+    """What the native kernel knows a loop by; None where there is none."""
+    if native is None:
+        return None
+    constants = np.concatenate([np.eye(4)[None], loop.links, np.eye(4)[None]])
+    made: object = native.chain(constants, loop.revolute.astype(np.float64), np.zeros(6))
+    return made
 
 
 def columns_of(closing: NDArray[Any]) -> NDArray[Any]:

@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robokin.arrays import Array, Index
-from robokin.inverse.elimination.loop import Loop, follow
+from robokin.inverse.elimination.loop import Loop, follow, native_loop
 from robokin.kernel.damped_newton import limited, singular_step, solved
+from robokin.kernel.native_kernel import native
 from robokin.kernel.sweep import sweep, twists
 
 STEP = 0.5
@@ -50,6 +51,17 @@ def refine(loop: Loop, closing: Array, index: Index, values: Array, steps: int) 
     closing: (m, 4, 4) L6; index: (s,) into closing; values: (s, 6) [rad | size].
     Returns values (s, 6) [rad | size], position (s,) [size] and angle (s,) [rad].
     """
+    known = native_loop(loop) if loop.revolute.all() else None
+    if native is None or known is None:
+        return refined_by_columns(loop, closing, index, values, steps)
+    refined, off = native.refined(known, closing[index], values, steps)
+    return refined, off[:, 0], off[:, 1]
+
+
+def refined_by_columns(
+    loop: Loop, closing: Array, index: Index, values: Array, steps: int
+) -> tuple[Array, Array, Array]:
+    """`refine` in Python."""
     refined = np.array(values, dtype=np.float64)
     position, angle = np.empty(len(refined)), np.empty(len(refined))
     slides = np.flatnonzero(~loop.revolute)

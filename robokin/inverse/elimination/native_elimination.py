@@ -9,10 +9,13 @@ Degenerate case. Where N are still not known nothing is said: such a target is l
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from robokin.arrays import Array, Flags, Index
-from robokin.inverse.elimination.loop import Loop
+from robokin.inverse.elimination.loop import Candidates, ComplexCandidates, Loop, native_loop
 from robokin.inverse.elimination.raghavan_roth import SPLITS, Elimination
 from robokin.kernel.chain import Chain
 from robokin.kernel.facts import fact
@@ -66,6 +69,41 @@ def _native_elimination(solver: Elimination, loop: Loop, chain: Chain, number: i
     if arm is None:
         return None
     return NativeElimination(native.elimination(arm, _numbers(solver, loop, number)), number)
+
+
+def candidates_at(
+    solver: Elimination, loop: Loop, closing: Array, complex_too: bool = True
+) -> tuple[Candidates, ComplexCandidates]:
+    """`solver.all_candidates` for L6 (m, 4, 4) of its loop, by the native kernel where all joints turn.
+
+    Targets at which its pencil is degenerate, of which it says nothing, are Python's.
+    """
+    known = _for_candidates(solver, loop) if native is not None and loop.revolute.all() else None
+    if native is None or known is None:
+        return solver.all_candidates(closing, complex_too)
+    counts, real, pairs = native.candidates(known, closing)
+    of_real, of_pair = (np.repeat(np.arange(len(closing)), count) for count in counts.astype(np.intp).T)
+    found = Candidates(of_real, real), ComplexCandidates(of_pair, pairs.view(np.complex128))
+    rest = np.flatnonzero(np.sum(counts, axis=1) == 0.0)
+    if len(rest):
+        more = solver.all_candidates(closing[rest])
+        found = Candidates(*_with(found[0], more[0], rest)), ComplexCandidates(*_with(found[1], more[1], rest))
+    return found if complex_too else (found[0], ComplexCandidates(of_pair[:0], np.empty((0, 6), dtype=complex)))
+
+
+def _with(
+    found: Candidates | ComplexCandidates, more: Candidates | ComplexCandidates, rest: Index
+) -> tuple[Index, NDArray[Any]]:
+    """The targets and values of candidates and of more ones, for the targets rest, by target."""
+    index = np.append(found.index, rest[more.index])
+    order = np.argsort(index, kind="stable")
+    return index[order], np.concatenate([found.values, more.values])[order]
+
+
+@fact
+def _for_candidates(solver: Elimination, loop: Loop) -> object:
+    assert native is not None
+    return native.elimination(native_loop(loop), _numbers(solver, loop, 0))
 
 
 def _numbers(solver: Elimination, loop: Loop, number: int) -> Array:

@@ -18,6 +18,7 @@ from robokin.inverse.analysis import Analysis, General
 from robokin.inverse.elimination.complex_newton import distinct as each_once
 from robokin.inverse.elimination.loop import Candidates, ComplexCandidates
 from robokin.inverse.elimination.loop_newton import determinants, refine
+from robokin.inverse.elimination.native_elimination import candidates_at
 from robokin.inverse.elimination.splits import REAL, count_solutions, rescue_candidates
 from robokin.inverse.verify import SAME
 from robokin.inverse.window import CLEARLY_REGULAR
@@ -63,7 +64,7 @@ def next_door(analysis: Analysis, T: Array) -> tuple[Index, Array, Flags]:
     many = (away[:, None] @ closing[None]).reshape(-1, 4, 4)
     whole = np.zeros(len(T), dtype=bool)
     if isinstance(solver, General):
-        real, imaginary = solver.first.all_candidates(many, complex_too=not six.virtual)
+        real, imaginary = candidates_at(solver.first, loop, many, complex_too=not six.virtual)
         parts = [Candidates(real.index % len(T), real.values)]
         if not six.virtual:
             whole, known = _counted(analysis, closing, real, imaginary)

@@ -14,6 +14,7 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.elimination.loop import Loop, loop_of
+from robokin.inverse.elimination.native_elimination import candidates_at
 from robokin.inverse.elimination.padding import Padded
 from robokin.inverse.elimination.splits import ORDER, choose_splits, count_solutions, elimination_of, generic_count
 from robokin.kernel.chain import Chain, chain_size
@@ -38,7 +39,7 @@ class Skew:
         """Real solutions of the loop for targets T (m, 4, 4): the target of each (s,), values (s, 6) [rad | m], and
         for which targets (m,) as many complex ones were found as there are."""
         closing = self.loop.closing(T)
-        real, imaginary = self.solver.all_candidates(closing)
+        real, imaginary = candidates_at(self.solver, self.loop, closing)
         parts = [(real.index, real.values), (imaginary.index, imaginary.values)]
         counted = count_solutions(self.loop, closing, parts, 3)
         scale = np.where(self.six.chain.revolute, 1.0, self.loop.size)

@@ -17,6 +17,7 @@ from robokin.arrays import Array, Complex, Index
 from robokin.inverse.elimination.complex_newton import regular_and_distinct
 from robokin.inverse.elimination.loop import Loop
 from robokin.inverse.elimination.loop_newton import refine
+from robokin.inverse.elimination.native_elimination import candidates_at
 from robokin.inverse.elimination.splits import REAL, Elimination, count_solutions
 from robokin.spatial import rotation_from_rpy, transform
 
@@ -73,7 +74,7 @@ class CloseBy:
     def _solutions(self, closing: Array) -> tuple[Index, Complex]:
         """The distinct regular complex solutions (s, 6) that are known at L6 (k, 4, 4), and the pose of each (s,)."""
         if isinstance(self.solver, Elimination):
-            parts = [(part.index, part.values) for part in self.solver.all_candidates(closing)]
+            parts = [(part.index, part.values) for part in candidates_at(self.solver, self.loop, closing)]
             counted = count_solutions(self.loop, closing, parts, STEPS)
             index, values = counted.target[counted.kept], counted.values[counted.kept]
             paired = np.abs(values.imag).max(axis=1, initial=0.0) > REAL

@@ -17,6 +17,7 @@ from robokin.arrays import Array, Flags, Index
 from robokin.inverse.elimination.loop_newton import LONG
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import brought_down, held_at, limited, singular_step
+from robokin.kernel.native_kernel import handle, native
 from robokin.kernel.residual import error_and_jacobian
 
 STEP = 0.6
@@ -45,6 +46,23 @@ def descend(
     x = np.clip(q / scale, low, high)
     # Lengths in the longest slide: what rounding leaves of positions would outweigh the errors of orientation.
     far = np.max(np.abs(x[:, ~chain.revolute]), axis=1, initial=1.0)[:, None]
+    known = handle(chain)
+    if native is None or known is None or chain.n > native.most_moved:
+        x, e = _stepped(chain, T, x, size, far, low, high, steps)
+        return x * scale, e
+    # Steps by singular values are left to Python.
+    ends, e = native.descended(known, T, far, x, size, low, high, steps)
+    rows = np.flatnonzero(far[:, 0] > LONG)
+    if len(rows):
+        ends[rows], e[rows] = _stepped(chain, T[rows], x[rows], size, far[rows], low, high, steps)
+    return ends * scale, e
+
+
+def _stepped(
+    chain: Chain, T: Array, x: Array, size: float, far: Array, low: Array, high: Array, steps: int
+) -> tuple[Array, Array]:
+    """`descend` in Python, from x (s, n) [rad | size] with the units far (s, 1) of lengths."""
+    scale = np.where(chain.revolute, 1.0, size)
     unit = np.where(chain.revolute, 1.0, far)
 
     def errors(rows: Index, x: Array) -> tuple[Array, Array]:
@@ -59,7 +77,7 @@ def descend(
 
     x, e = brought_down(errors, step, x, low, high, steps=steps, arrived=ARRIVED / far[:, 0] ** 2)
     e[:, :3] *= far
-    return x * scale, e
+    return x, e
 
 
 def _step(x: Array, e: Array, J: Array, low: Array, high: Array, long: Flags) -> Array:

@@ -21,6 +21,7 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import limited
+from robokin.kernel.native_kernel import handle, native
 from robokin.kernel.ranks import ROOT_RANK
 from robokin.kernel.residual import error_and_jacobian
 
@@ -114,6 +115,27 @@ def corrected(
     error at which steps end; zero: what a singular value must exceed to count. Returns x (s, n)
     [rad | size], the greatest part of the error left (s,) and the Jacobian there (s, 6, n).
     """
+    known = handle(chain)
+    if native is None or known is None or chain.n > native.most_moved:
+        return corrected_by_rows(chain, T, x, size, normals, steps, settled, zero)
+    extra = 0 if normals is None else normals.shape[1]
+    rows = np.zeros((len(x), 0)) if normals is None else normals
+    most = np.broadcast_to(np.asarray(steps, dtype=np.float64), len(x))
+    ends: tuple[Array, Array, Array] = native.corrected(known, T, rows, extra, most, x, size, settled, zero)
+    return ends
+
+
+def corrected_by_rows(
+    chain: Chain,
+    T: Array,
+    x: Array,
+    size: float,
+    normals: Array | None,
+    steps: int | Index,
+    settled: float,
+    zero: float,
+) -> tuple[Array, Array, Array]:
+    """`corrected` in Python."""
     e, J = errors(chain, T, x, size)
     off = np.max(np.abs(e), axis=1)
     rows = np.flatnonzero(off > settled)

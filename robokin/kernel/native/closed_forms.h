@@ -382,7 +382,7 @@ static int ordered(double q[SIX][LANES], const Slot key, const Slot sum, int cou
 static int finished(const Form *form, const double *T, double q[SIX][LANES], int count, int doubt,
                     const Wanted *wanted, Solutions *out) {
     Slot position, angle, key, sum;
-    double least[LANES];
+    double least[LANES] = {0.0};
     Truth inside, place, exact;
     proven(form, T, q, position, angle);
     FOR_PARTS BITS(exact) =

@@ -8,7 +8,9 @@
 
 #include "eigen.h"
 #include "equations.h"
+#include "complex_loop.h"
 #include "loop_newton.h"
+#include "paths.h"
 
 /* |Im x| above which a root is tried as a complex one; what a complex solution's must exceed [rad]. */
 #define COMPLEX_ROOT 1e-9
@@ -277,6 +279,26 @@ static void candidates(const Elimination *E, const Motion *closing, Tried *tried
     if (!eigenvalues(&matrix))
         return;
     of_roots(E, &eq, &matrix, tried);
+}
+
+/* The same for an L6 (4, 4) in sizes as numbers: real ones (6) into `real`, one of each pair (6, re and im) into `pairs`. */
+void NAMED(tried_candidates)(const Elimination *E, const double *L6, int *counts, double *real, double *pairs) {
+    Motion closing;
+    Tried tried;
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++)
+            closing.R[r][c] = L6[4 * r + c];
+        closing.t[r] = L6[4 * r + 3];
+    }
+    candidates(E, &closing, &tried);
+    counts[0] = tried.real;
+    counts[1] = tried.pairs;
+    memcpy(real, tried.q, (size_t)tried.real * sizeof tried.q[0]);
+    for (int k = 0; k < tried.pairs; k++)
+        for (int i = 0; i < 6; i++) {
+            *pairs++ = creal(tried.z[k][i]);
+            *pairs++ = cimag(tried.z[k][i]);
+        }
 }
 
 /* The greatest difference of two configurations in a joint [rad], full turns left out. */

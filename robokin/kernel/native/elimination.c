@@ -202,10 +202,97 @@ end:
     return both;
 }
 
+/* Rows of some width that grow in number. */
+typedef struct {
+    double *rows;
+    npy_intp used, room, width;
+} Growing;
+
+/* Whether there is room for as many rows as a target may have candidates. */
+static int has_room(Growing *list) {
+    if (list->room - list->used >= MOST_CANDIDATES)
+        return 1;
+    npy_intp more = 2 * list->room + 8 * MOST_CANDIDATES;
+    double *larger = realloc(list->rows, (size_t)(more * list->width) * sizeof(double));
+    if (!larger)
+        return 0;
+    list->rows = larger;
+    list->room = more;
+    return 1;
+}
+
+/* The rows as an array. */
+static PyObject *array_of(const Growing *list) {
+    const npy_intp shape[] = {list->used, list->width};
+    PyObject *array = PyArray_EMPTY(2, shape, NPY_DOUBLE, 0);
+    if (array && list->used)
+        memcpy(PyArray_DATA((PyArrayObject *)array), list->rows,
+               (size_t)(list->used * list->width) * sizeof(double));
+    return array;
+}
+
+static PyObject *candidates(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copy = NULL, *counts = NULL, *real = NULL, *pairs = NULL, *all = NULL;
+    Growing of_reals = {NULL, 0, 0, 6}, of_pairs = {NULL, 0, 0, 12};
+    (void)self;
+    const Elimination *known = count == 2 ? PyCapsule_GetPointer(args[0], ELIMINATION) : NULL;
+    PyArrayObject *L6 = known ? doubles(args[1], 3, &copy) : NULL;
+    if (!L6) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "candidates(elimination, closing)");
+        return NULL;
+    }
+    npy_intp m = PyArray_DIM(L6, 0);
+    if (PyArray_NDIM(L6) != 3 || PyArray_SIZE(L6) != 16 * m) {
+        PyErr_SetString(PyExc_ValueError, "expected targets (m, 4, 4)");
+        goto end;
+    }
+    const npy_intp shape[] = {m, 2};
+    counts = PyArray_EMPTY(2, shape, NPY_DOUBLE, 0);
+    if (!counts)
+        goto end;
+    const double *from = PyArray_DATA(L6);
+    double *to = PyArray_DATA((PyArrayObject *)counts);
+    int short_of_memory = 0;
+    Py_BEGIN_ALLOW_THREADS
+    for (npy_intp i = 0; i < m; i++) {
+        int found[2];
+        if (!has_room(&of_reals) || !has_room(&of_pairs)) {
+            short_of_memory = 1;
+            break;
+        }
+        lanes.tried_candidates(known, from + 16 * i, found, of_reals.rows + 6 * of_reals.used,
+                               of_pairs.rows + 12 * of_pairs.used);
+        of_reals.used += found[0];
+        of_pairs.used += found[1];
+        to[2 * i] = found[0];
+        to[2 * i + 1] = found[1];
+    }
+    Py_END_ALLOW_THREADS
+    if (short_of_memory) {
+        PyErr_NoMemory();
+        goto end;
+    }
+    real = array_of(&of_reals);
+    pairs = real ? array_of(&of_pairs) : NULL;
+    if (pairs)
+        all = PyTuple_Pack(3, counts, real, pairs);
+end:
+    free(of_reals.rows);
+    free(of_pairs.rows);
+    Py_XDECREF(copy);
+    Py_XDECREF(counts);
+    Py_XDECREF(real);
+    Py_XDECREF(pairs);
+    return all;
+}
+
 PyMethodDef elimination_methods[] = {
     {"elimination", (PyCFunction)(void (*)(void))elimination, METH_FASTCALL,
      "elimination(chain, numbers): a prepared elimination's handle"},
     {"eliminated", (PyCFunction)(void (*)(void))eliminated, METH_FASTCALL,
      "eliminated(elimination, T): counts (m, 4) and solutions (s, 8)"},
+    {"candidates", (PyCFunction)(void (*)(void))candidates, METH_FASTCALL,
+     "candidates(elimination, closing): counts (m, 2), real ones (s, 6), of pairs one (t, 12)"},
     {NULL, NULL, 0, NULL},
 };

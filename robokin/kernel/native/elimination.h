@@ -49,6 +49,7 @@ typedef struct {
 #define DECLARED_ELIMINATION(name)                                                                                     \
     void prepared_elimination##name(Elimination *);                                                                    \
     void eliminated##name(const Elimination *, const double *, Eliminated *);                                          \
+    void tried_candidates##name(const Elimination *, const double *, int *, double *, double *);                       \
     int listed_elimination##name(const Elimination *, const Form *, const double *, const Wanted *, Solutions *, int *);
 
 DECLARED_ELIMINATION(_base)

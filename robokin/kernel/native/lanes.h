@@ -289,10 +289,50 @@ void NAMED(jacobians)(const Chain *chain, const double *q, ptrdiff_t m, double s
     }
 }
 
+/* The columns x, y, z, p of a target (4, 4) into lane l. */
+static void put_target(const double *T, int l, double W[12][LANES]) {
+    for (int c = 0; c < 4; c++)
+        for (int r = 0; r < 3; r++)
+            W[3 * c + r][l] = T[4 * r + c];
+}
+
+/* What frames lack of targets W: e (6, LANES), in sizes and radians. */
+static void pose_errors(const Frame *F, double W[12][LANES], int count, double size, double e[6][LANES]) {
+    double w[3][LANES], trace[LANES];
+    for (int l = 0; l < LANES; l++)
+        trace[l] = 0.0;
+    for (int r = 0; r < 3; r++) {
+        int a = (r + 1) % 3, b = (r + 2) % 3;
+        for (int l = 0; l < LANES; l++)
+            w[r][l] = 0.0;
+        for (int c = 0; c < 3; c++)
+            for (int l = 0; l < LANES; l++)
+                w[r][l] += F->v[3 * c + a][l] * W[3 * c + b][l] - F->v[3 * c + b][l] * W[3 * c + a][l];
+    }
+    for (int j = 0; j < 9; j++)
+        for (int l = 0; l < LANES; l++)
+            trace[l] += F->v[j][l] * W[j][l];
+    for (int l = 0; l < count; l++) {
+        for (int r = 0; r < 3; r++)
+            e[r][l] = (W[9 + r][l] - F->v[9 + r][l]) / size;
+        double sine = 0.5 * sqrt(w[0][l] * w[0][l] + w[1][l] * w[1][l] + w[2][l] * w[2][l]);
+        double cosine = 0.5 * (trace[l] - 1.0);
+        if (sine < HALF_TURN && cosine < 0.0) {
+            /* Half a turn has no sine and so no direction here: it must still not pass for none. */
+            e[3][l] = 3.14159265358979323846;
+            e[4][l] = e[5][l] = 0.0;
+            continue;
+        }
+        double scale = 0.5 * atan2(sine, cosine) / (sine > 1e-300 ? sine : 1e-300);
+        for (int r = 0; r < 3; r++)
+            e[3 + r][l] = w[r][l] * scale;
+    }
+}
+
 /* What poses at q (m, n) lack of targets T (m, 4, 4): (m, 6) in sizes and radians, and the Jacobians (m, 6, n). */
 void NAMED(errors)(const Chain *chain, const double *T, const double *q, ptrdiff_t m, double size, double *error,
                    double *jacobian) {
-    double axes[MOST_JOINTS][6][LANES], J[6][LANES], W[12][LANES], w[3][LANES], trace[LANES];
+    double axes[MOST_JOINTS][6][LANES], J[6][LANES], W[12][LANES], e[6][LANES];
     Frame F;
     int n = chain->n;
     for (ptrdiff_t first = 0; first < m; first += LANES) {
@@ -304,39 +344,11 @@ void NAMED(errors)(const Chain *chain, const double *T, const double *q, ptrdiff
                 for (int r = 0; r < 6; r++)
                     jacobian[(first + l) * 6 * n + r * n + i] = J[r][l];
         }
-        for (int l = 0; l < LANES; l++) {
-            const double *wish = T + 16 * (first + (l < count ? l : count - 1));
-            for (int c = 0; c < 4; c++)
-                for (int r = 0; r < 3; r++)
-                    W[3 * c + r][l] = wish[4 * r + c];
-            trace[l] = 0.0;
-        }
-        for (int r = 0; r < 3; r++) {
-            int a = (r + 1) % 3, b = (r + 2) % 3;
-            for (int l = 0; l < LANES; l++)
-                w[r][l] = 0.0;
-            for (int c = 0; c < 3; c++)
-                for (int l = 0; l < LANES; l++)
-                    w[r][l] += F.v[3 * c + a][l] * W[3 * c + b][l] - F.v[3 * c + b][l] * W[3 * c + a][l];
-        }
-        for (int j = 0; j < 9; j++)
-            for (int l = 0; l < LANES; l++)
-                trace[l] += F.v[j][l] * W[j][l];
-        for (ptrdiff_t l = 0; l < count; l++) {
-            double *e = error + 6 * (first + l);
-            for (int r = 0; r < 3; r++)
-                e[r] = (W[9 + r][l] - F.v[9 + r][l]) / size;
-            double sine = 0.5 * sqrt(w[0][l] * w[0][l] + w[1][l] * w[1][l] + w[2][l] * w[2][l]);
-            double cosine = 0.5 * (trace[l] - 1.0);
-            if (sine < HALF_TURN && cosine < 0.0) {
-                /* Half a turn has no sine and so no direction here: it must still not pass for none. */
-                e[3] = 3.14159265358979323846;
-                e[4] = e[5] = 0.0;
-                continue;
-            }
-            double scale = 0.5 * atan2(sine, cosine) / (sine > 1e-300 ? sine : 1e-300);
-            for (int r = 0; r < 3; r++)
-                e[3 + r] = w[r][l] * scale;
-        }
+        for (int l = 0; l < LANES; l++)
+            put_target(T + 16 * (first + (l < count ? l : count - 1)), l, W);
+        pose_errors(&F, W, (int)count, size, e);
+        for (ptrdiff_t l = 0; l < count; l++)
+            for (int r = 0; r < 6; r++)
+                error[6 * (first + l) + r] = e[r][l];
     }
 }

@@ -2,3 +2,4 @@
 #include "lanes.h"
 #include "closed_forms.h"
 #include "eliminate.h"
+#include "descents.h"

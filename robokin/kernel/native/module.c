@@ -14,16 +14,20 @@
 #include <string.h>
 
 /* As robokin.kernel.native_module expects it. */
-#define INTERFACE 4
+#define INTERFACE 5
 
 /* numpy has no more, whatever its version. */
 #define MOST_DIMENSIONS 64
 
-static const Lanes base = {poses_base, frames_base, jacobians_base, errors_base, solution_base, solutions_base, sides_base,
-                           prepared_elimination_base, eliminated_base, listed_elimination_base};
+static const Lanes base = {poses_base, frames_base, jacobians_base, errors_base, descended_base, corrected_base,
+                           refined_base, complex_refined_base, tracked_base, solution_base, solutions_base, sides_base,
+                           prepared_elimination_base, eliminated_base, tried_candidates_base,
+                           listed_elimination_base};
 #ifdef ROBOKIN_AVX2
-static const Lanes avx2 = {poses_avx2, frames_avx2, jacobians_avx2, errors_avx2, solution_avx2, solutions_avx2, sides_avx2,
-                           prepared_elimination_avx2, eliminated_avx2, listed_elimination_avx2};
+static const Lanes avx2 = {poses_avx2, frames_avx2, jacobians_avx2, errors_avx2, descended_avx2, corrected_avx2,
+                           refined_avx2, complex_refined_avx2, tracked_avx2, solution_avx2, solutions_avx2, sides_avx2,
+                           prepared_elimination_avx2, eliminated_avx2, tried_candidates_avx2,
+                           listed_elimination_avx2};
 #endif
 Lanes lanes;
 
@@ -383,6 +387,7 @@ static PyMethodDef methods[] = {
 /* The methods of other files. */
 static PyMethodDef *const more_methods[] = {
     closed_form_methods,
+    descent_methods,
     elimination_methods,
     number_text_methods,
     NULL,
@@ -405,6 +410,7 @@ PyMODINIT_FUNC PyInit__native(void) {
             Py_CLEAR(made);
     if (made && (PyModule_AddIntConstant(made, "interface", INTERFACE) < 0 ||
                  PyModule_AddIntConstant(made, "most_joints", MOST_JOINTS) < 0 ||
+                 PyModule_AddIntConstant(made, "most_moved", MOST_MOVED) < 0 ||
                  PyModule_AddIntConstant(made, "most_slots", MOST_SLOTS) < 0 ||
                  PyModule_AddIntConstant(made, "most_roots", MOST_ROOTS) < 0 ||
                  PyModule_AddStringConstant(made, "sources", ROBOKIN_SOURCES) < 0))

@@ -29,17 +29,25 @@ typedef struct {
     void (*frames)(const Chain *, const double *, ptrdiff_t, double *);
     void (*jacobians)(const Chain *, const double *, ptrdiff_t, double, int, double *);
     void (*errors)(const Chain *, const double *, const double *, ptrdiff_t, double, double *, double *);
+    void (*descended)(const Chain *, const double *, const double *, double *, ptrdiff_t, double, const double *,
+                      const double *, int, double *);
+    void (*corrected)(const Chain *, const double *, const double *, int, const double *, double *, ptrdiff_t, double,
+                      double, double, double *, double *);
+    void (*refined)(const Chain *, const double *, double *, ptrdiff_t, int, double *);
+    void (*complex_refined)(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);
+    void (*tracked)(const Chain *, const double *, const double *, const double *, ptrdiff_t, double *, double *);
     int (*solution)(const Form *, const double *, const Wanted *, Solutions *);
     void (*solutions)(const Form *, const double *, ptrdiff_t, const Wanted *, Solutions *, ptrdiff_t *, ptrdiff_t *,
                       unsigned char *);
     void (*sides)(const Form *, const double *, ptrdiff_t, ptrdiff_t *);
     void (*prepared_elimination)(Elimination *);
     void (*eliminated)(const Elimination *, const double *, Eliminated *);
+    void (*tried_candidates)(const Elimination *, const double *, int *, double *, double *);
     int (*listed_elimination)(const Elimination *, const Form *, const double *, const Wanted *, Solutions *, int *);
 } Lanes;
 
 /* Methods of the other files. */
-extern PyMethodDef closed_form_methods[], elimination_methods[], number_text_methods[];
+extern PyMethodDef closed_form_methods[], descent_methods[], elimination_methods[], number_text_methods[];
 
 /* The set in use. */
 extern Lanes lanes;

@@ -1,0 +1,240 @@
+/* Newton's steps for blocks of starts, and paths of a homotopy, as methods of the module. */
+
+#include "module.h"
+
+#include <string.h>
+
+/* Steps of a call at most: beyond them nothing is gained. */
+#define MOST_STEPS_ASKED 100000
+
+/* A C-contiguous array of m rows of `width` numbers, or of any number of rows where m is negative. */
+static const double *table(PyObject *object, npy_intp width, npy_intp *m, PyObject **copy) {
+    PyArrayObject *array = doubles(object, 1, copy);
+    if (!array)
+        return NULL;
+    npy_intp size = PyArray_SIZE(array), count = PyArray_DIM(array, 0);
+    if ((*m >= 0 && count != *m) || size != count * width) {
+        PyErr_SetString(PyExc_ValueError, "arrays of a descent do not fit each other");
+        return NULL;
+    }
+    *m = count;
+    return PyArray_DATA(array);
+}
+
+/* A chain that is a loop of six joints. */
+static const Chain *loop(PyObject *capsule) {
+    const Chain *known = PyCapsule_GetPointer(capsule, CHAIN);
+    if (known && known->n != 6) {
+        PyErr_SetString(PyExc_ValueError, "expected a loop of six joints");
+        return NULL;
+    }
+    return known;
+}
+
+/* The number of steps of a call; -1 and an error where it is none. */
+static int steps_of(PyObject *object) {
+    long steps = PyLong_AsLong(object);
+    if (steps == -1 && PyErr_Occurred())
+        return -1;
+    if (steps < 0 || steps > MOST_STEPS_ASKED) {
+        PyErr_SetString(PyExc_ValueError, "expected a number of steps");
+        return -1;
+    }
+    return (int)steps;
+}
+
+/* A new array (m, width), or (m,) where the width is 0. */
+static PyObject *made(npy_intp m, npy_intp width) {
+    const npy_intp shape[] = {m, width};
+    return PyArray_EMPTY(width ? 2 : 1, shape, NPY_DOUBLE, 0);
+}
+
+static double *numbers_of(PyObject *array) { return PyArray_DATA((PyArrayObject *)array); }
+
+/* Newton's steps on a loop, of real values or complex ones. */
+static PyObject *on_loop(PyObject *const *args, int is_complex) {
+    PyObject *copies[2] = {NULL, NULL}, *values = NULL, *off = NULL, *both = NULL;
+    double longest = is_complex ? PyFloat_AsDouble(args[4]) : 0.0;
+    int steps = PyErr_Occurred() ? -1 : steps_of(args[3]);
+    const Chain *known = steps < 0 ? NULL : loop(args[0]);
+    npy_intp m = -1;
+    if (!known)
+        return NULL;
+    const double *closing = table(args[1], is_complex ? 32 : 16, &m, &copies[0]);
+    const double *from = closing ? table(args[2], is_complex ? 12 : 6, &m, &copies[1]) : NULL;
+    for (int i = 0; !is_complex && i < 6; i++)
+        if (from && !known->revolute[i]) {
+            PyErr_SetString(PyExc_ValueError, "expected a loop of turning joints");
+            goto end;
+        }
+    values = from ? made(m, is_complex ? 12 : 6) : NULL;
+    off = values ? made(m, is_complex ? 0 : 2) : NULL;
+    if (!off)
+        goto end;
+    double *to = numbers_of(values), *left = numbers_of(off);
+    Py_BEGIN_ALLOW_THREADS
+    memcpy(to, from, (size_t)m * (is_complex ? 12 : 6) * sizeof(double));
+    if (is_complex)
+        lanes.complex_refined(known, closing, to, m, steps, longest, left);
+    else
+        lanes.refined(known, closing, to, m, steps, left);
+    Py_END_ALLOW_THREADS
+    both = PyTuple_Pack(2, values, off);
+end:
+    Py_XDECREF(values);
+    Py_XDECREF(off);
+    Py_XDECREF(copies[0]);
+    Py_XDECREF(copies[1]);
+    return both;
+}
+
+static PyObject *refined(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    (void)self;
+    if (count == 4)
+        return on_loop(args, 0);
+    PyErr_SetString(PyExc_TypeError, "refined(loop, closing, values, steps)");
+    return NULL;
+}
+
+static PyObject *complex_refined(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    (void)self;
+    if (count == 5)
+        return on_loop(args, 1);
+    PyErr_SetString(PyExc_TypeError, "complex_refined(loop, closing, values, steps, longest)");
+    return NULL;
+}
+
+static PyObject *tracked(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    static const npy_intp widths[] = {14, 14, 2, 12};
+    const double *from[4];
+    PyObject *copies[4] = {NULL, NULL, NULL, NULL}, *values = NULL, *left = NULL, *both = NULL;
+    (void)self;
+    if (count != 5) {
+        PyErr_SetString(PyExc_TypeError, "tracked(loop, start, target, bend, values)");
+        return NULL;
+    }
+    const Chain *known = loop(args[0]);
+    npy_intp m = -1;
+    if (!known)
+        return NULL;
+    for (int i = 0; i < 4; i++)
+        if (!(from[i] = table(args[1 + i], widths[i], &m, &copies[i])))
+            goto end;
+    values = made(m, 12);
+    left = values ? made(m, 3) : NULL;
+    if (!left)
+        goto end;
+    double *to = numbers_of(values), *ends = numbers_of(left);
+    Py_BEGIN_ALLOW_THREADS
+    memcpy(to, from[3], (size_t)m * 12 * sizeof(double));
+    lanes.tracked(known, from[0], from[1], from[2], m, to, ends);
+    Py_END_ALLOW_THREADS
+    both = PyTuple_Pack(2, values, left);
+end:
+    for (int i = 0; i < 4; i++)
+        Py_XDECREF(copies[i]);
+    Py_XDECREF(values);
+    Py_XDECREF(left);
+    return both;
+}
+
+/* A chain that is short enough for steps. */
+static const Chain *moved_chain(PyObject *capsule) {
+    const Chain *known = PyCapsule_GetPointer(capsule, CHAIN);
+    if (known && known->n > MOST_MOVED) {
+        PyErr_SetString(PyExc_ValueError, "expected a chain of fewer joints");
+        return NULL;
+    }
+    return known;
+}
+
+static PyObject *descended(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copies[5] = {NULL, NULL, NULL, NULL, NULL}, *x = NULL, *error = NULL, *both = NULL;
+    (void)self;
+    if (count != 8) {
+        PyErr_SetString(PyExc_TypeError, "descended(chain, T, far, x, size, low, high, steps)");
+        return NULL;
+    }
+    double size = PyFloat_AsDouble(args[4]);
+    int steps = PyErr_Occurred() ? -1 : steps_of(args[7]);
+    const Chain *known = steps < 0 ? NULL : moved_chain(args[0]);
+    npy_intp m = -1, n = known ? known->n : 0;
+    if (!known)
+        return NULL;
+    const double *T = table(args[1], 16, &m, &copies[0]), *far = T ? table(args[2], 1, &m, &copies[1]) : NULL;
+    const double *from = far ? table(args[3], n, &m, &copies[2]) : NULL;
+    const double *low = from ? table(args[5], 1, &n, &copies[3]) : NULL;
+    const double *high = low ? table(args[6], 1, &n, &copies[4]) : NULL;
+    x = high ? made(m, n) : NULL;
+    error = x ? made(m, 6) : NULL;
+    if (!error)
+        goto end;
+    double *to = numbers_of(x), *left = numbers_of(error);
+    Py_BEGIN_ALLOW_THREADS
+    memcpy(to, from, (size_t)(m * n) * sizeof(double));
+    lanes.descended(known, T, far, to, m, size, low, high, steps, left);
+    Py_END_ALLOW_THREADS
+    both = PyTuple_Pack(2, x, error);
+end:
+    for (int i = 0; i < 5; i++)
+        Py_XDECREF(copies[i]);
+    Py_XDECREF(x);
+    Py_XDECREF(error);
+    return both;
+}
+
+static PyObject *corrected(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copies[4] = {NULL, NULL, NULL, NULL}, *x = NULL, *off = NULL, *J = NULL, *all = NULL;
+    (void)self;
+    if (count != 9) {
+        PyErr_SetString(PyExc_TypeError, "corrected(chain, T, normals, extra, most, x, size, settled, zero)");
+        return NULL;
+    }
+    double size = PyFloat_AsDouble(args[6]), settled = PyErr_Occurred() ? 0.0 : PyFloat_AsDouble(args[7]);
+    double zero = PyErr_Occurred() ? 0.0 : PyFloat_AsDouble(args[8]);
+    int extra = PyErr_Occurred() ? -1 : steps_of(args[3]);
+    const Chain *known = extra < 0 ? NULL : moved_chain(args[0]);
+    npy_intp m = -1, n = known ? known->n : 0;
+    if (!known)
+        return NULL;
+    if (extra > 1 + n) {
+        PyErr_SetString(PyExc_ValueError, "expected fewer normals");
+        return NULL;
+    }
+    const double *T = table(args[1], 16, &m, &copies[0]), *normals = T ? table(args[2], extra * n, &m, &copies[1]) : NULL;
+    const double *most = normals ? table(args[4], 1, &m, &copies[2]) : NULL;
+    const double *from = most ? table(args[5], n, &m, &copies[3]) : NULL;
+    x = from ? made(m, n) : NULL;
+    off = x ? made(m, 0) : NULL;
+    const npy_intp shape[] = {m, 6, n};
+    J = off ? PyArray_EMPTY(3, shape, NPY_DOUBLE, 0) : NULL;
+    if (!J)
+        goto end;
+    double *to = numbers_of(x), *left = numbers_of(off), *jacobians = numbers_of(J);
+    Py_BEGIN_ALLOW_THREADS
+    memcpy(to, from, (size_t)(m * n) * sizeof(double));
+    lanes.corrected(known, T, normals, extra, most, to, m, size, settled, zero, left, jacobians);
+    Py_END_ALLOW_THREADS
+    all = PyTuple_Pack(3, x, off, J);
+end:
+    for (int i = 0; i < 4; i++)
+        Py_XDECREF(copies[i]);
+    Py_XDECREF(x);
+    Py_XDECREF(off);
+    Py_XDECREF(J);
+    return all;
+}
+
+PyMethodDef descent_methods[] = {
+    {"descended", (PyCFunction)(void (*)(void))descended, METH_FASTCALL,
+     "descended(chain, T, far, x, size, low, high, steps): values (m, n) and errors (m, 6)"},
+    {"corrected", (PyCFunction)(void (*)(void))corrected, METH_FASTCALL,
+     "corrected(chain, T, normals, extra, most, x, size, settled, zero): (m, n), (m,), (m, 6, n)"},
+    {"refined", (PyCFunction)(void (*)(void))refined, METH_FASTCALL,
+     "refined(loop, closing, values, steps): values (m, 6) and what they lack (m, 2)"},
+    {"complex_refined", (PyCFunction)(void (*)(void))complex_refined, METH_FASTCALL,
+     "complex_refined(loop, closing, values, steps, longest): values (m, 12) and residuals (m,)"},
+    {"tracked", (PyCFunction)(void (*)(void))tracked, METH_FASTCALL,
+     "tracked(loop, start, target, bend, values): values (m, 12) and u, speed, lost (m, 3)"},
+    {NULL, NULL, 0, NULL},
+};
