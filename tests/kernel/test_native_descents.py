@@ -12,6 +12,7 @@ from kernel.test_straight_line import random_robots
 from library_entries import entry
 
 import robokin
+from robokin.formats.read import read_text
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.elimination import complex_newton, homotopy_paths, loop_newton
 from robokin.inverse.elimination.complex_newton import complex_refine
@@ -24,7 +25,8 @@ from robokin.inverse.elimination.splits import count_solutions
 from robokin.inverse.numeric import least_squares
 from robokin.inverse.numeric.least_squares import descend
 from robokin.inverse.second_look import known_solutions
-from robokin.inverse.self_motion import pose_correction
+from robokin.inverse.self_motion import fronts, pose_correction
+from robokin.inverse.self_motion.curve_tracing import leads_away, trace_many
 from robokin.inverse.self_motion.pose_correction import corrected
 from robokin.kernel import native_kernel
 from robokin.kernel.chain import chain_of, chain_size
@@ -45,7 +47,7 @@ def in_python(monkeypatch):
 
     def asked(function, *given, **named):
         with monkeypatch.context() as patch:
-            for module in (complex_newton, homotopy_paths, loop_newton, least_squares, pose_correction):
+            for module in (complex_newton, homotopy_paths, loop_newton, least_squares, pose_correction, fronts):
                 patch.setattr(module, "native", None)
             return function(*given, **named)
 
@@ -169,6 +171,52 @@ def test_corrections_lead_to_the_same_places(name, rng, instructions, in_python)
         assert np.abs(np.abs(e).max(axis=1) - got[1])[np.abs(e).max(axis=1) < 1.0].max() < 1e-12
 
 
+def tangents(robot, q, size):
+    """The null vectors (s, n) of the Jacobians at q (s, n), joint values and lengths in sizes."""
+    J = robokin.jacobian(robot, q)
+    J[:, :3] /= size
+    return np.linalg.svd(J * np.where(robot.revolute, 1.0, size))[2][:, -1]
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14", "xarm7", "gen3"])
+def test_curves_have_the_same_points(name, rng, instructions, in_python):
+    robot = entry(name)
+    chain = chain_of(robot)
+    size = chain_size(chain)
+    q = np.concatenate([rng.uniform(-2.0, 2.0, (4, 7)), np.radians(30.0) * rng.integers(-3, 4, (3, 7))])
+    asked = chain, robokin.forward_kinematics(robot, q), q, tangents(robot, q, size), size
+    assert np.array_equal(leads_away(*asked), in_python(leads_away, *asked))
+    for mine, theirs in zip(trace_many(*asked), in_python(trace_many, *asked), strict=True):
+        assert mine.closed == theirs.closed
+        assert mine.ended == theirs.ended
+        # Where one passes a crossing its steps hang on the last digits.
+        assert mine.ended or abs(len(mine.x) - len(theirs.x)) <= 2
+        if mine.x.shape == theirs.x.shape:
+            assert np.abs(mine.x - theirs.x).max() < 1e-6
+            assert np.abs(mine.tangents - theirs.tangents).max() < 1e-5
+    whole = trace_many(*asked)
+    alone = [trace_many(chain, asked[1][i : i + 1], q[i : i + 1], asked[3][i : i + 1], size)[0] for i in range(4)]
+    assert digits(curve.x for curve in whole[:4]) == digits(curve.x for curve in alone)
+
+
+def test_curves_with_slides_end_where_python_ends_them(rng, in_python):
+    robot = read_text(
+        "robokin: 1\nname: RRRRPRR\nunits: {length: m, angle: deg}\njoints:\n"
+        "  - {type: revolute, d: 0.3, a: 0, alpha: 90}\n  - {type: revolute, d: 0, a: 0.3, alpha: -90}\n"
+        "  - {type: revolute, d: 0.1, a: 0.2, alpha: 90}\n  - {type: revolute, d: 0.2, a: 0.1, alpha: 60}\n"
+        "  - {type: prismatic, theta: 20, a: 0, alpha: 90, limits: [-1, 1]}\n"
+        "  - {type: revolute, d: 0.1, a: 0.1, alpha: -90}\n  - {type: revolute, d: 0.1, a: 0, alpha: 0}\n"
+    )
+    chain = chain_of(robot)
+    size = chain_size(chain)
+    q = rng.uniform(-1.0, 1.0, (6, 7))
+    x = q / np.where(chain.revolute, 1.0, size)
+    asked = chain, robokin.forward_kinematics(robot, q), x, tangents(robot, q, size), size, None, robot.limits
+    for mine, theirs in zip(trace_many(*asked), in_python(trace_many, *asked), strict=True):
+        assert (mine.closed, mine.ended) == (theirs.closed, theirs.ended)
+        assert abs(len(mine.x) - len(theirs.x)) <= 2
+
+
 def test_random_chains_descend_alike(rng, in_python):
     for robot in random_robots(rng, 40):
         chain = chain_of(robot)
@@ -214,7 +262,22 @@ def calls(rng):
     arm, x = handle(chain), rng.uniform(-2.0, 2.0, (21, 7))
     T = robokin.forward_kinematics(robot, x)
     start, ones, normals = x + 0.1 * rng.normal(size=x.shape), np.ones(21), rng.normal(size=(21, 1, 7))
+    numbers_of = np.zeros((42, 6))
+    numbers_of[:, 0], numbers_of[:, 1], numbers_of[:, 4] = 0.05, 0.1, 1.0
+    ways = tangents(robot, x, 1.0)
+    state = np.concatenate([np.tile(x, (2, 1)), np.concatenate([ways, -ways]), np.zeros((42, 7)), numbers_of], axis=1)
+    endless = np.full((42, 7), np.inf)
+
+    def steps(i):
+        both = np.append(i, i + 21)
+        wide = -endless[both], endless[both]
+        curves = np.zeros(len(i)), np.full(len(i), 25.0)
+        asked = np.tile(T, (2, 1, 1))[both], np.full(len(both), 8.0), *wide, state[both], *curves, 1.0, 8.0
+        state_of, closed, *_ = native.advanced(arm, *asked)
+        return state_of[: len(i)], state_of[len(i) :], closed
+
     return [
+        steps,
         lambda i: native.refined(known, closing[i], q[i] + 0.1, 15),
         lambda i: native.complex_refined(known, last[i], numbers[i], 6, 0.5),
         lambda i: native.tracked(known, points[0][i], points[1][i], bend[i], numbers[i]),
@@ -268,6 +331,11 @@ def test_arrays_that_do_not_fit_are_refused(rng):
     loop, slides = native_loop(named("crx10ia")), native_loop(named("stanford"))
     arm = handle(chain_of(entry("panda")))
     one = np.ones
+
+    def advanced(chain, m, s, state=27):
+        wide = one((m, 7)), one((m, 7))
+        return native.advanced(chain, one((m, 4, 4)), one(m), *wide, one((m, state)), one(s), one(s), 1.0, 8.0)
+
     for wrong in (
         lambda: native.refined(loop, one((2, 4, 4)), one((3, 6)), 3),
         lambda: native.refined(loop, one((3, 4, 4)), one((3, 5)), 3),
@@ -281,10 +349,21 @@ def test_arrays_that_do_not_fit_are_refused(rng):
         lambda: native.corrected(arm, one((3, 4, 4)), one((3, 9, 7)), 9, one(3), one((3, 7)), 1.0, 0.0, 0.0),
         lambda: native.corrected(arm, one((3, 4, 4)), one((3, 2, 7)), 1, one(3), one((3, 7)), 1.0, 0.0, 0.0),
         lambda: native.candidates(arm, one((3, 4, 4))),
+        lambda: advanced(arm, 3, 1),
+        lambda: advanced(arm, 2, 2),
+        lambda: advanced(arm, 4, 2, state=26),
+        lambda: advanced(loop, 4, 2),
     ):
         with pytest.raises(ValueError, match=r"fit|steps|turning|six|normals|PyCapsule"):
             wrong()
-    for few in (native.refined, native.complex_refined, native.tracked, native.descended, native.corrected):
+    for few in (
+        native.refined,
+        native.complex_refined,
+        native.tracked,
+        native.descended,
+        native.corrected,
+        native.advanced,
+    ):
         with pytest.raises(TypeError):
             few(loop)
     long = replace(entry("panda"), rows=entry("panda").rows * 3, poses={})

@@ -102,8 +102,7 @@ def leads_away(chain: Chain, T: Array, x: Array, ways: Array, size: float, locke
     A single step is no proof: where four solutions merge, its error is of the third order and may be below rounding.
     """
     fronts = Fronts(chain, T, x, ways, size, np.zeros(x.shape, dtype=bool) if locked is None else locked, None)
-    for _ in range(TRIAL_STEPS):
-        fronts.advance()
+    fronts.advances(TRIAL_STEPS)
     return fronts.away()
 
 

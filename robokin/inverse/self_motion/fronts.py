@@ -25,6 +25,7 @@ from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.pose_correction import CLOSES, SLOW_STEPS, STEPS, corrected, errors, scale_of
 from robokin.inverse.self_motion.tangent_cone import cone
 from robokin.kernel.chain import Chain
+from robokin.kernel.native_kernel import handle, native
 from robokin.spatial.angles import TURN, circled
 
 FIRST = 0.05
@@ -82,6 +83,13 @@ SAME = 1e-5
 1e-8 at least, and to 1e-6 where they count twice."""
 
 
+ENDS = ("", "bound", "lost")
+"""Why a front has ended, by the native kernel's numbers."""
+
+NATIVELY = 7
+"""Joints of a chain up to which the six rows of its Jacobian leave one direction at most."""
+
+
 def slide_reach(chain: Chain, size: float, limits: Array | None) -> Array:
     """How far (n,) joints are followed [size]: those that slide to their limits (own, 2) [m] if these are far."""
     reach = np.where(chain.revolute, np.inf, REACH)
@@ -118,7 +126,7 @@ class Fronts:
         self.alive = np.ones(2 * self.s, dtype=bool)
         self.count = np.zeros(2 * self.s, dtype=np.intp)
         self.closed, self.stays = np.zeros(self.s, dtype=bool), np.zeros(self.s, dtype=bool)
-        self.ended = [""] * (2 * self.s)
+        self.ended, self.codes = [""] * (2 * self.s), np.zeros(2 * self.s)
         self.history: list[tuple[Index, Array, Array]] = []
         self.locks = np.where(np.concatenate([locked, locked])[:, :, None], np.eye(self.n), 0.0)
         self.locking = bool(locked.any())
@@ -135,13 +143,11 @@ class Fronts:
 
     def run(self, trial: Flags) -> None:
         """Follow all curves to their ends, but for those on trial (s,) that do not lead away from their seeds."""
-        for step in range(MOST_STEPS):
-            if not self.alive.any():
-                return
-            if step == TRIAL_STEPS:
-                self.stays = trial & ~self.away()
-                self.alive &= ~np.tile(self.stays, 2)
-            self.advance()
+        self.advances(TRIAL_STEPS)
+        if self.alive.any():
+            self.stays = trial & ~self.away()
+            self.alive &= ~np.tile(self.stays, 2)
+        self.advances(MOST_STEPS - TRIAL_STEPS)
         for row in np.flatnonzero(self.alive):
             self.ended[row] = "lost"
 
@@ -152,10 +158,46 @@ class Fronts:
             far[rows] = np.maximum(far[rows], np.linalg.norm(points - self.seeds[0][rows], axis=1))
         return np.asarray(self.closed | (np.max(far.reshape(2, -1), axis=0) >= AWAY))
 
-    def advance(self) -> None:
-        """One step of every front that has not come to its end."""
-        self._meet()
-        rows = np.flatnonzero(self.alive)
+    def advances(self, steps: int) -> None:
+        """So many steps of every front that has not come to its end: Python's where there is a crossing."""
+        left = np.full(self.s, float(steps))
+        while True:
+            left, waiting = self._plainly(left)
+            some = (left > 0.0) & waiting & (self.alive[: self.s] | self.alive[self.s :])
+            if not some.any():
+                return
+            self.advance(some)
+            left[some] -= 1.0
+
+    def _plainly(self, left: Array) -> tuple[Array, Flags]:
+        """How many steps (s,) are left of these after those of the native kernel, and (s,) which curves wait.
+
+        It leaves to Python those that are on a crossing, or count twice; without it all are.
+        """
+        known = handle(self.chain)
+        if native is None or known is None or self.locking or self.n > NATIVELY:
+            return left, np.ones(self.s, dtype=bool)
+        numbers = np.stack([self.h, self.second, self.moved_on, self.count, self.alive, self.codes], axis=1)
+        state = np.concatenate([self.x, self.t, self.bend, numbers], axis=1)
+        most = np.where(self.slow, float(SLOW_STEPS), float(STEPS))
+        asked = self.T, most, self.low, self.high, state, self.closed.astype(np.float64), left, self.size, float(STEPS)
+        state, closed, left, waits, points = native.advanced(known, *asked)
+        n = self.n
+        self.x, self.t, self.bend = (np.ascontiguousarray(state[:, i * n : (i + 1) * n]) for i in range(3))
+        self.h, self.second, moved_on, count, alive, codes = np.ascontiguousarray(state[:, 3 * n :].T)
+        self.moved_on, self.count = moved_on.astype(np.intp), count.astype(np.intp)
+        self.alive, self.closed = alive > 0.0, closed > 0.0
+        for row in np.flatnonzero(codes != self.codes):
+            self.ended[row] = ENDS[int(codes[row])]
+        self.codes = codes
+        if len(points):
+            self.history.append((points[:, 0].astype(np.intp), points[:, 1 : 1 + n], points[:, 1 + n :]))
+        return left, waits > 0.0
+
+    def advance(self, some: Flags) -> None:
+        """One step of every front of some curves (s,) that has not come to its end."""
+        self._meet(some)
+        rows = np.flatnonzero(self.alive & np.tile(some, 2))
         if len(rows):
             self._step(rows)
 
@@ -164,9 +206,9 @@ class Fronts:
         gap = self.x[(rows + self.s) % (2 * self.s)] - self.x[rows]
         return circled(gap, self.chain.revolute)
 
-    def _meet(self) -> None:
+    def _meet(self, some: Flags) -> None:
         """Steps shortened so that fronts that face each other meet half way; those that have met are done."""
-        first = np.flatnonzero(self.alive[: self.s] & self.alive[self.s :])
+        first = np.flatnonzero(self.alive[: self.s] & self.alive[self.s :] & some)
         if not len(first):
             return
         gap = self._gaps(first)
@@ -241,7 +283,7 @@ class Fronts:
         self.h[rows[towards]] = np.minimum(self.h[rows[towards]], np.maximum(0.5 * distance, APPROACH))
 
     def _end(self, rows: Index, why: str) -> None:
-        self.alive[rows] = False
+        self.alive[rows], self.codes[rows] = False, ENDS.index(why)
         for row in rows:
             self.ended[row] = why
 

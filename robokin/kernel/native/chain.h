@@ -27,6 +27,24 @@ typedef struct {
     Constant links[MOST_JOINTS]; /* after each joint */
 } Chain;
 
+/* Numbers of a front beside its place, tangent and bend; the reasons why one ends. */
+#define FRONT_NUMBERS 6
+#define FRONT_BOUND 1.0
+#define FRONT_LOST 2.0
+
+/* The two ends of s curves: rows i and s + i. What is asked, what changes, and room for one step of all of them. */
+typedef struct {
+    int n;
+    ptrdiff_t s;
+    double size, plain_steps; /* of a correction; curves that are allowed more wait */
+    const double *targets, *steps_of, *low, *high;
+    double *state, *closed, *left, *waits;
+    double *history; /* of each point the front, the place and the tangent */
+    ptrdiff_t used, room;
+    ptrdiff_t *rows;
+    double *T, *guess, *led, *normals, *gaps, *tangents, *most, *off, *seconds, *J;
+} Fronts;
+
 #define DECLARED(name)                                                                                                 \
     void poses##name(const Chain *, const double *, ptrdiff_t, double *);                                              \
     void frames##name(const Chain *, const double *, ptrdiff_t, double *);                                             \
@@ -36,6 +54,7 @@ typedef struct {
                          const double *, int, double *);                                                               \
     void corrected##name(const Chain *, const double *, const double *, int, const double *, double *, ptrdiff_t,      \
                          double, double, double, double *, double *);                                                  \
+    int advanced##name(const Chain *, Fronts *);                                                                       \
     void refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double *);                             \
     void complex_refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);              \
     void tracked##name(const Chain *, const double *, const double *, const double *, ptrdiff_t, double *, double *);

@@ -2,6 +2,7 @@
 
 #include "module.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Steps of a call at most: beyond them nothing is gained. */
@@ -225,7 +226,96 @@ end:
     return all;
 }
 
+static PyObject *advanced(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copies[7] = {NULL, NULL, NULL, NULL, NULL, NULL, NULL}, *parts[5] = {NULL, NULL, NULL, NULL, NULL};
+    PyObject *all = NULL;
+    Fronts F;
+    void *space = NULL;
+    int whole = 0;
+    (void)self;
+    memset(&F, 0, sizeof F);
+    if (count != 10) {
+        PyErr_SetString(PyExc_TypeError, "advanced(chain, T, most, low, high, state, closed, left, size, plain)");
+        return NULL;
+    }
+    F.size = PyFloat_AsDouble(args[8]);
+    F.plain_steps = PyErr_Occurred() ? 0.0 : PyFloat_AsDouble(args[9]);
+    const Chain *known = PyErr_Occurred() ? NULL : moved_chain(args[0]);
+    npy_intp m = -1, n = known ? known->n : 0;
+    if (!known)
+        return NULL;
+    if (n > 7) {
+        PyErr_SetString(PyExc_ValueError, "expected a chain of fewer joints");
+        return NULL;
+    }
+    F.n = (int)n;
+    const npy_intp wide = 3 * n + FRONT_NUMBERS, point = 1 + 2 * n;
+    F.targets = table(args[1], 16, &m, &copies[0]);
+    F.steps_of = F.targets ? table(args[2], 1, &m, &copies[1]) : NULL;
+    F.low = F.steps_of ? table(args[3], n, &m, &copies[2]) : NULL;
+    F.high = F.low ? table(args[4], n, &m, &copies[3]) : NULL;
+    const double *from = F.high ? table(args[5], wide, &m, &copies[4]) : NULL;
+    npy_intp half = m / 2;
+    const double *closed = from ? table(args[6], 1, &half, &copies[5]) : NULL;
+    const double *left = closed ? table(args[7], 1, &half, &copies[6]) : NULL;
+    if (!left)
+        goto end;
+    for (npy_intp i = 0; i < half; i++)
+        whole |= !(left[i] >= 0.0 && left[i] <= MOST_STEPS_ASKED);
+    if (m % 2 || whole) {
+        PyErr_SetString(PyExc_ValueError, "arrays of a descent do not fit each other");
+        goto end;
+    }
+    F.s = half;
+    const npy_intp widths_of[] = {wide, 0, 0, 0};
+    double **places[] = {&F.state, &F.closed, &F.left, &F.waits};
+    for (int i = 0; i < 4; i++) {
+        if (!(parts[i] = made(i ? half : m, widths_of[i])))
+            goto end;
+        *places[i] = numbers_of(parts[i]);
+    }
+    memcpy(F.state, from, (size_t)(m * wide) * sizeof(double));
+    memcpy(F.closed, closed, (size_t)half * sizeof(double));
+    memcpy(F.left, left, (size_t)half * sizeof(double));
+    /* Of each front: T, guess, led, normals, gaps, tangents, three numbers and J; and a row. */
+    space = malloc((size_t)(m + 1) * ((size_t)(16 + 5 * n + 3 + 6 * n) * sizeof(double) + sizeof(ptrdiff_t)));
+    if (!space) {
+        PyErr_NoMemory();
+        goto end;
+    }
+    double *next = space;
+    double **room[] = {&F.T, &F.guess, &F.led, &F.normals, &F.gaps, &F.tangents, &F.most, &F.off, &F.seconds, &F.J};
+    const npy_intp widths[] = {16, n, n, n, n, n, 1, 1, 1, 6 * n};
+    for (int i = 0; i < 10; i++) {
+        *room[i] = next;
+        next += m * widths[i];
+    }
+    F.rows = (ptrdiff_t *)next;
+    Py_BEGIN_ALLOW_THREADS
+    whole = lanes.advanced(known, &F);
+    Py_END_ALLOW_THREADS
+    if (!whole) {
+        PyErr_NoMemory();
+        goto end;
+    }
+    if (!(parts[4] = made(F.used, point)))
+        goto end;
+    if (F.used)
+        memcpy(numbers_of(parts[4]), F.history, (size_t)(F.used * point) * sizeof(double));
+    all = PyTuple_Pack(5, parts[0], parts[1], parts[2], parts[3], parts[4]);
+end:
+    free(space);
+    free(F.history);
+    for (int i = 0; i < 7; i++)
+        Py_XDECREF(copies[i]);
+    for (int i = 0; i < 5; i++)
+        Py_XDECREF(parts[i]);
+    return all;
+}
+
 PyMethodDef descent_methods[] = {
+    {"advanced", (PyCFunction)(void (*)(void))advanced, METH_FASTCALL,
+     "advanced(chain, T, most, low, high, state, closed, left, size, plain): state, closed, left, waits, points"},
     {"descended", (PyCFunction)(void (*)(void))descended, METH_FASTCALL,
      "descended(chain, T, far, x, size, low, high, steps): values (m, n) and errors (m, 6)"},
     {"corrected", (PyCFunction)(void (*)(void))corrected, METH_FASTCALL,

@@ -3,3 +3,4 @@
 #include "closed_forms.h"
 #include "eliminate.h"
 #include "descents.h"
+#include "fronts.h"
