@@ -20,6 +20,9 @@ Index = NDArray[np.intp]
 Whole = NDArray[np.int64]
 """Whole numbers."""
 
+Bytes = NDArray[np.uint8]
+"""Whole numbers below 256."""
+
 
 def read_only(values: ArrayLike) -> Array:
     """A copy that cannot be changed."""

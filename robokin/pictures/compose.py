@@ -12,10 +12,10 @@ from robokin.arrays import Array, Flags
 from robokin.kinematics.forward import forward_kinematics, link_frames
 from robokin.model import Robot
 from robokin.pictures.outline import CELLS, Outline, trace
-from robokin.pictures.picture import Cloud, OrientationDegrees, Panel
+from robokin.pictures.picture import Cloud, GridTable, OrientationDegrees, Panel
 from robokin.pictures.views import UPRIGHT, View, freed, section_view, slice_view
 from robokin.workspace.extremes import extent
-from robokin.workspace.membership import Membership, counted
+from robokin.workspace.membership import Membership, counted, solution_count
 from robokin.workspace.region import Region, region_of
 from robokin.workspace.sampling import joint_values, positions
 from robokin.workspace.size_cells import Cells, split_cells
@@ -41,6 +41,9 @@ ROUND = 360
 
 CLOUD = 24000
 """Points of a cloud: more are a solid ball to the eye, and a slow page."""
+
+COUNT_STEPS = 100
+"""Steps along a picture's longer side at which solutions are counted."""
 
 BEND = 0.5
 """Joint angle [rad] of an arm that has no named pose: neither straight nor folded."""
@@ -171,6 +174,19 @@ def bounds_in(view: View) -> tuple[Array, Array]:
     return low, high
 
 
+def counts_in(view: View, space: Space) -> GridTable | None:
+    """How many configurations of a space reach the places of a plane; None where there are infinitely many, or where
+    the plane shows what other half planes have, too."""
+    if not counted(space) or space.basis is None or (view.radial and space.axis is None):
+        return None
+    low, high = bounds_in(view)
+    step = float(np.max(high - low)) / COUNT_STEPS
+    shape = tuple(np.ceil((high - low) / step).astype(int) + 1)
+    places = np.stack(np.meshgrid(*(low[i] + step * np.arange(shape[i]) for i in (0, 1)), indexing="ij"), axis=-1)
+    count = np.minimum(solution_count(space, view.points(places.reshape(-1, 2))), 254)
+    return GridTable("uv", low, np.full(2, step), count.astype(np.uint8).reshape(shape))
+
+
 def cloud(space: Space, seed: int = 0, arms: Sequence[Array] = (), cut: bool = False) -> Cloud:
     """Points all over the reachable set, evenly: one to a cell; `cut` takes out the quarter in front."""
     p = sampled(space, 4 * SHADOW, seed)
@@ -193,14 +209,19 @@ def cloud(space: Space, seed: int = 0, arms: Sequence[Array] = (), cut: bool = F
     return Cloud(chosen, chosen[:, 2], "", list(arms))
 
 
+def drawn_poses(robot: Robot) -> dict[str, Array]:
+    """The configurations (n,) [rad | m] that pictures show, by name: what the description names, `home` first; else one
+    that is neither straight nor folded, without a name."""
+    if robot.poses:
+        first = "home" if "home" in robot.poses else next(iter(robot.poses))
+        return {first: robot.poses[first], **robot.poses}
+    low, high = np.clip(robot.limits, -10.0, 10.0).T
+    return {"": np.clip(np.where(robot.revolute, BEND, 0.5 * (low + high)), low, high)}
+
+
 def arm_line(robot: Robot) -> tuple[Array, str]:
     """The arm from its base to its tool, (k, 3) [m], in a pose that the description names, and the pose's name."""
-    name = "home" if "home" in robot.poses else next(iter(robot.poses), "")
-    if name:
-        q = robot.poses[name]
-    else:
-        low, high = np.clip(robot.limits, -10.0, 10.0).T
-        q = np.clip(np.where(robot.revolute, BEND, 0.5 * (low + high)), low, high)
+    name, q = next(iter(drawn_poses(robot).items()))
     frames, tool = link_frames(robot, q), forward_kinematics(robot, q)[:3, 3]
     corners = [frames[0, :3, 3]]
     for before, after in pairwise(frames):

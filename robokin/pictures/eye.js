@@ -4,7 +4,11 @@ function later() { if (!waiting) { waiting = true; requestAnimationFrame(() => {
 
 // One finger or the mouse turns; two fingers zoom and move; shift or the right button moves.
 const fingers = new Map();
-function turn(dx, dy) { azimuth -= dx * 0.5; elevation = Math.min(Math.max(elevation + dy * 0.5, -90), 90); later(); }
+function turn(dx, dy) {
+  // What is flat is moved instead.
+  if (data.flat) { shift = [shift[0] + dx, shift[1] + dy]; later(); return; }
+  azimuth -= dx * 0.5; elevation = Math.min(Math.max(elevation + dy * 0.5, -90), 90); later();
+}
 function nearer(factor, x, y) {
   const before = zoom;
   zoom = Math.min(Math.max(zoom * factor, 0.2), 20);
@@ -33,6 +37,11 @@ canvas.addEventListener("contextmenu", (event) => event.preventDefault());
 canvas.addEventListener("dblclick", reset);
 canvas.addEventListener("wheel", (event) => { event.preventDefault(); nearer(Math.exp(-event.deltaY / 600), event.clientX, event.clientY); }, {passive: false});
 canvas.addEventListener("keydown", (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey) return;
   const move = {ArrowLeft: [10, 0], ArrowRight: [-10, 0], ArrowUp: [0, 10], ArrowDown: [0, -10]}[event.key];
-  if (move) { event.preventDefault(); turn(...move); }
+  const factor = {"+": 1.2, "=": 1.2, "-": 1 / 1.2}[event.key], box = canvas.getBoundingClientRect();
+  if (move || factor || event.key === "0") event.preventDefault();
+  if (move) turn(...move);
+  else if (factor) nearer(factor, box.left + box.width / 2 + shift[0], box.top + box.height / 2 + shift[1]);
+  else if (event.key === "0") reset();
 });

@@ -10,7 +10,7 @@ import numpy as np
 
 from robokin.arrays import Array, Whole
 from robokin.pictures.compose import bounds_in
-from robokin.pictures.picture import OrientationDegrees
+from robokin.pictures.picture import GridTable, OrientationDegrees, parts
 from robokin.pictures.views import View
 from robokin.workspace.attitudes import Group, attitudes
 from robokin.workspace.pose_descent import searched
@@ -35,6 +35,9 @@ LEAST = 32
 
 MOST_RINGS = 40
 """Rings of cells that a map is widened by at most."""
+
+SPACE_RINGS = 2
+"""Rings of cells about a map in space: the set's boundary cuts cells in two."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,3 +158,15 @@ def degrees_in(view: View, found: Workspace, meaning: str, cores: int | None = N
     fraction = freedom.at(places)
     there = np.isfinite(fraction)
     return OrientationDegrees(places[there], fraction[there], cell, meaning) if np.any(there) else None
+
+
+def map_in_space(found: Workspace) -> GridTable | None:
+    """The map of a solid without symmetry in space, as coarse as it was made; None where there is none."""
+    dexterity = found.dexterity
+    if dexterity is None or found.space.dimension != 3 or dexterity.section or not len(dexterity.points):
+        return None
+    first = dexterity.points.min(axis=0)
+    index = np.round((dexterity.points - first) / dexterity.cell).astype(int) + SPACE_RINGS
+    table = _widened(index, dexterity.fraction, SPACE_RINGS)
+    step = np.full(3, dexterity.cell)
+    return GridTable("xyz", first - SPACE_RINGS * step, step, parts(table))

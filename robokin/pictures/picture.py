@@ -7,9 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from robokin.arrays import Array
+from robokin.arrays import Array, Bytes
 from robokin.pictures.outline import Outline
 from robokin.units import Units
+
+CLOSED = -0.3
+"""Half the width [rad] of a gap that is none, in a solid that a joint's limits leave open."""
 
 ON_AXIS = 0.02
 """A boundary nearer to the axis than this part of a cell is the axis itself, as well as bisection has it."""
@@ -27,12 +30,25 @@ class OrientationDegrees:
 
 
 @dataclass(frozen=True, eq=False)
+class GridTable:
+    """Bytes `values` (n0, n1[, n2]) at the nodes low + step · index of a grid; of fractions 254 is all, and 255 none.
+
+    kind: what its coordinates are: "rz" a section's [m], "rza" with the angle [rad], "xyz" the world's, "uv" a plane's.
+    """
+
+    kind: str
+    low: Array
+    step: Array
+    values: Bytes
+
+
+@dataclass(frozen=True, eq=False)
 class Panel:
     """A plane set on its axes.
 
     labels: the axes' names; outline: the set; free: what it would be without the joints' limits; arms: lines (k, 2)
     [m] from the base to the tool, pose what theirs is called; degrees: colours instead of one fill; radial: whether the
-    first label is a distance from an axis.
+    first label is a distance from an axis; counts: how many configurations reach its places.
     """
 
     title: str
@@ -43,6 +59,7 @@ class Panel:
     pose: str = ""
     degrees: OrientationDegrees | None = None
     radial: bool = False
+    counts: GridTable | None = None
 
     def edges(self) -> list[Array]:
         """The boundary as lines (k, 2) [m], but for what lies on the axis that a section is turned about: there is
@@ -82,8 +99,41 @@ class Cloud:
 
 
 @dataclass(frozen=True, eq=False)
+class SolidSet:
+    """A solid that can be reached.
+
+    axis (4, 4): the frame that the section (r, z) turns about; edges: lines (k, 2) [m] of its boundary,
+    `loops` all of it, the axis included; gaps (n0, n1, k, 2) [rad]: the middle and half the width of what is left out
+    at nodes low + step · index of the section, none where the solid is whole. Where there is no axis `block` says which
+    points of the world are in it (1) or not (0). counts: how many configurations reach its places; freedom: with which
+    part of the orientations.
+    """
+
+    axis: Array | None
+    loops: tuple[Array, ...] = ()
+    edges: tuple[Array, ...] = ()
+    low: Array | None = None
+    step: float = 0.0
+    shape: tuple[int, int] = (0, 0)
+    gaps: Array | None = None
+    block: GridTable | None = None
+    counts: GridTable | None = None
+    freedom: GridTable | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class PosedArm:
+    """An arm in a named pose ("" where it has no name), as straight pieces: role, a, b, across (3,) [m], width [m],
+    number of sides."""
+
+    name: str
+    pieces: Sequence[tuple[str, Array, Array, Array, float, int]]
+
+
+@dataclass(frozen=True, eq=False)
 class Picture:
-    """Panels and a cloud under a title. `figures` are names with what is known, a line each."""
+    """Panels and a cloud under a title. `figures` are names with what is known, a line each. solid, arms, robot and
+    options: what a page shows beside them: the set itself, the arm in its poses, and what a shell calls them."""
 
     title: str
     subtitle: str
@@ -91,6 +141,10 @@ class Picture:
     panels: Sequence[Panel] = ()
     cloud: Cloud | None = None
     figures: Sequence[tuple[str, str]] = field(default=())
+    solid: SolidSet | None = None
+    arms: Sequence[PosedArm] = ()
+    robot: str = ""
+    options: str = ""
 
 
 def round_steps(low: float, high: float, most: int) -> Array:
@@ -109,3 +163,8 @@ def round_steps(low: float, high: float, most: int) -> Array:
 def round_name(value: float) -> str:
     """A round number as an axis shows it."""
     return f"{value:.6g}"
+
+
+def parts(fraction: Array) -> Bytes:
+    """Fractions in 0 … 1 as bytes 0 … 254; 255 where there is none."""
+    return np.where(np.isfinite(fraction), np.round(254.0 * np.nan_to_num(fraction)), 255.0).astype(np.uint8)

@@ -8,7 +8,7 @@ import numpy as np
 
 from robokin.arrays import Array, Flags
 from robokin.model import CoupledRobot, Robot
-from robokin.workspace.membership import reachable
+from robokin.workspace.membership import drawn_reachable
 from robokin.workspace.space import Space, space_of
 
 UPRIGHT = 1e-9
@@ -43,7 +43,7 @@ class View:
         inside = np.zeros(len(uv), dtype=bool)
         there = np.flatnonzero(uv[:, 0] >= 0.0) if self.radial else np.arange(len(uv))
         if len(there):
-            inside[there] = reachable(self.space, self.points(uv[there]))
+            inside[there] = drawn_reachable(self.space, self.points(uv[there]))
         return inside
 
     def places(self, points: Array) -> Array:

@@ -1,4 +1,4 @@
-"""A page in one file that needs no network: the cloud turns with the mouse, beside it the plane pictures."""
+"""A page in one file that needs no network: the set turns with the mouse and is cut open, beside it its planes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from typing import Any
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.pictures.picture import Cloud, Panel, Picture
+from robokin.pictures.arm_faces import COLOURS
+from robokin.pictures.arm_scene import SLANTING
+from robokin.pictures.picture import CLOSED, Cloud, GridTable, Panel, Picture, PosedArm, SolidSet, parts
 
 DIGITS = 5
 """Significant digits of a place in a plane picture: far finer than a screen."""
@@ -26,14 +28,30 @@ STEPS = 65535
 
 def page(picture: Picture) -> bytes:
     """The picture as an .html file."""
-    scale = 1.0 / picture.units.metres
+    units = picture.units
+    scale = 1.0 / units.metres
+    low, high = _box(picture)
+    solid, cloud = picture.solid, picture.cloud
     data = {
         "title": picture.title,
         "subtitle": picture.subtitle,
-        "unit": picture.units.length,
+        "robot": picture.robot,
+        "options": picture.options,
+        "length": units.length,
+        "angle": units.angle,
+        "radians": units.radians,
         "figures": [list(pair) for pair in picture.figures],
         "plates": [_plate(panel, scale) for panel in picture.panels],
-        "cloud": None if picture.cloud is None else _cloud(picture.cloud, scale, picture.units.length),
+        "solid": None if solid is None else _solid(solid, scale),
+        "cloud": None if cloud is None else _cloud(cloud, scale),
+        "arms": [_arm(arm, scale) for arm in picture.arms],
+        "flat": solid is None and cloud is None,
+        "box": _short(np.array([low, high]) * scale),
+        "size": float(f"{float(np.max(high - low)) * scale:.{DIGITS}g}"),
+        # The floor lies below all that is drawn.
+        "forked": True,
+        "view": list(SLANTING),
+        "colours": COLOURS,
     }
     return filled("page.html", picture.title, data)
 
@@ -61,11 +79,19 @@ def _plate(panel: Panel, scale: float) -> dict[str, Any]:
         "edges": [_short(line * scale) for line in panel.edges()],
         "free": [_short(loop * scale) for loop in panel.free.loops] if panel.free else [],
         "arms": [_short(arm * scale) for arm in panel.arms],
+        "pose": panel.pose,
         "cells": None,
+        "meaning": "",
     }
+    record["counts"] = None if panel.counts is None else _table(panel.counts, scale)
     if panel.degrees is not None:
-        places = np.column_stack([panel.degrees.points * scale, panel.degrees.fraction])
-        record |= {"cells": _short(places), "cell": panel.degrees.cell * scale, "meaning": panel.degrees.meaning}
+        degrees = panel.degrees
+        first = degrees.points.min(axis=0)
+        index = np.round((degrees.points - first) / degrees.cell).astype(int)
+        values = np.full(index.max(axis=0) + 1, 255, dtype=np.uint8)
+        values[tuple(index.T)] = parts(degrees.fraction)
+        step = np.full(2, degrees.cell)
+        record |= {"cells": _table(GridTable("uv", first, step, values), scale), "meaning": degrees.meaning}
     return record
 
 
@@ -73,24 +99,96 @@ def _short(values: Array) -> Any:
     return json.loads(json.dumps(values.tolist()), parse_float=lambda text: float(f"{float(text):.{DIGITS}g}"))
 
 
-def _cloud(cloud: Cloud, scale: float, unit: str) -> dict[str, Any]:
+def _box(picture: Picture) -> tuple[Array, Array]:
+    """Corners (3,), (3,) [m] of a box about the set and the arm in its first pose."""
+    corners: list[Array] = []
+    if picture.cloud is not None:
+        corners += [picture.cloud.points, *picture.cloud.arms]
+    if picture.solid is not None:
+        corners += [solid_corners(picture.solid)]
+        corners += [np.array([end for piece in arm.pieces for end in piece[1:3]]) for arm in picture.arms[:1]]
+    points = np.concatenate(corners) if corners else np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]])
+    low, high = points.min(axis=0), points.max(axis=0)
+    room = np.maximum(0.5 * (1e-6 * np.max(high - low) - (high - low)), 0.0) if np.any(high > low) else np.full(3, 0.5)
+    return low - room, high + room
+
+
+def solid_corners(solid: SolidSet) -> Array:
+    """(m, 3) [m] points whose box is the solid's."""
+    if solid.axis is None:
+        assert solid.block is not None
+        sides = solid.block.low + 0.5 * solid.block.step, solid.block.step * (np.array(solid.block.values.shape) - 2)
+        return np.stack([sides[0], sides[0] + sides[1]])
+    turn = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    line = np.concatenate(solid.loops)
+    r, z = line[np.unique(np.concatenate([line.argmin(axis=0), line.argmax(axis=0)]))].T
+    points = np.stack(
+        [np.outer(r, np.cos(turn)), np.outer(r, np.sin(turn)), np.repeat(z[:, None], 24, axis=1)], axis=-1
+    )
+    return np.asarray(points.reshape(-1, 3) @ solid.axis[:3, :3].T + solid.axis[:3, 3])
+
+
+def _solid(solid: SolidSet, scale: float) -> dict[str, Any]:
+    record: dict[str, Any] = {"axis": None, "gaps": None}
+    if solid.axis is not None and solid.low is not None:
+        axis = solid.axis.copy()
+        axis[:3, 3] *= scale
+        record |= {
+            "axis": (axis + 0.0).ravel().tolist(),
+            "loops": [_short(loop * scale) for loop in solid.loops],
+            "edges": [_short(line * scale) for line in solid.edges],
+            "low": (solid.low * scale).tolist(),
+            "step": solid.step * scale,
+            "shape": list(solid.shape),
+        }
+    if solid.gaps is not None:
+        # Middles in parts of a turn, halves of widths from the one that is no gap to half a turn.
+        middle = np.round(solid.gaps[..., 0] / (2.0 * np.pi) * STEPS)
+        half = np.round((solid.gaps[..., 1] - CLOSED) / (np.pi - CLOSED) * STEPS)
+        record |= {"gaps": _packed(np.stack([middle, half], axis=-1).astype("<u2")), "closed": CLOSED,
+                   "most": solid.gaps.shape[2]}  # fmt: skip
+    for name in ("block", "counts", "freedom"):
+        table = getattr(solid, name)
+        record[name] = None if table is None else _table(table, scale)
+    return record
+
+
+def _table(table: GridTable, scale: float) -> dict[str, Any]:
+    """A table with its runs of equal bytes: the byte, and how many follow."""
+    flat = table.values.ravel()
+    starts = np.flatnonzero(np.concatenate([[True], flat[1:] != flat[:-1]]))
+    runs = np.diff(np.append(starts, len(flat)))
+    # A run of more than 255 is several.
+    parts_of = -(-runs // 255)
+    lengths = np.full(int(parts_of.sum()), 255)
+    lengths[np.cumsum(parts_of) - 1] = runs - 255 * (parts_of - 1)
+    pairs = np.stack([np.repeat(flat[starts], parts_of), lengths], axis=1).astype(np.uint8)
+    lengths_of = np.array([scale, scale, 1.0 if table.kind == "rza" else scale])[: len(table.low)]
+    return {"kind": table.kind, "low": (table.low * lengths_of).tolist(), "step": (table.step * lengths_of).tolist(),
+            "shape": list(table.values.shape), "runs": _packed(pairs)}  # fmt: skip
+
+
+def _packed(values: Any) -> str:
+    return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode()
+
+
+def _arm(arm: PosedArm, scale: float) -> dict[str, Any]:
+    pieces = [
+        [role, _short(a * scale), _short(b * scale), _short(across), float(f"{width * scale:.{DIGITS}g}"), sides]
+        for role, a, b, across, width, sides in arm.pieces
+    ]
+    return {"name": arm.name, "pieces": pieces}
+
+
+def _cloud(cloud: Cloud, scale: float) -> dict[str, Any]:
     corners = np.concatenate([cloud.points, *cloud.arms])
     low, high = corners.min(axis=0), corners.max(axis=0)
     # A flat cloud's box is as thin as a line, but no thinner.
     thick = np.maximum(high - low, 1e-6 * np.max(high - low) or 1.0)
-    high = low + thick
-    least, most = float(cloud.values.min()), float(cloud.values.max())
-    values = (cloud.values - least) / max(most - least, 1e-300)
-    if cloud.meaning:
-        least, most, values = 0.0, 1.0, cloud.values
-    packed = np.column_stack([(cloud.points - low) / thick, values])
-    packed = np.round(np.clip(packed, 0.0, 1.0) * STEPS).astype("<u2")
-    factor = 1.0 if cloud.meaning else scale
+    packed = np.round(np.clip((cloud.points - low) / thick, 0.0, 1.0) * STEPS).astype("<u2")
     return {
-        "points": base64.b64encode(packed.tobytes()).decode(),
+        "points": _packed(packed),
         "low": (low * scale).tolist(),
-        "high": (high * scale).tolist(),
-        "range": [float(f"{least * factor:.4g}"), float(f"{most * factor:.4g}")],
-        "meaning": cloud.meaning or f"z [{unit}]",
+        "high": ((low + thick) * scale).tolist(),
         "arms": [(arm * scale).tolist() for arm in cloud.arms],
     }

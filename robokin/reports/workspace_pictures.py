@@ -7,13 +7,14 @@ from dataclasses import replace
 from typing import Any
 
 from robokin.errors import InputError
-from robokin.pictures.compose import arm_line, cloud, panel
+from robokin.pictures.compose import arm_line, cloud, counts_in, panel
 from robokin.pictures.orientation_picture import degrees_in
 from robokin.pictures.picture import Panel, Picture
 from robokin.pictures.views import View
 from robokin.pictures.workspace_cuts import Cut, usual_views
 from robokin.records.workspace_records import WORDS
 from robokin.units import Units
+from robokin.workspace.analyse import SAMPLES
 from robokin.workspace.space import Space
 from robokin.workspace.workspace_result import Workspace
 
@@ -58,14 +59,30 @@ def picture_of(
     """The planes that were asked for; else the usual ones, and the cloud of a solid or a curved set."""
     from robokin.reports.workspace_tables import figures
 
-    space = found.space
-    line, pose = arm_line(space.robot)
+    space, robot = found.space, found.space.robot
+    line, pose = arm_line(robot)
     panels = [_panel(found, view, line, pose, cores) for view in views or _flat_views(found, units)]
-    whole = None
-    if not views and (space.dimension == 3 or not panels):
-        whole = cloud(space, found.seed, [line], cut=cut and space.dimension == 3)
     known = [(name, value) for name, value in figures(found, units, cuts) if name]
-    return Picture(space.robot.name, _subtitle(found, units), units, panels, whole, known)
+    picture = Picture(robot.name, _subtitle(found, units), units, panels, figures=known,
+                      robot=robot.id, options=_options(found))  # fmt: skip
+    if views or not (space.dimension == 3 or not panels):
+        return picture
+    if not cut and space.dimension == 3:
+        from robokin.pictures.solid_set import posed_arms, solid_set
+
+        sections = [panel.outline for panel in panels if panel.radial]
+        whole = solid_set(found, sections[0] if sections else None)
+        if whole is not None:
+            return replace(picture, solid=whole, arms=posed_arms(space))
+    return replace(picture, cloud=cloud(space, found.seed, [line], cut=cut and space.dimension == 3))
+
+
+def _options(found: Workspace) -> str:
+    """What a command says beside the robot to find the same."""
+    asked = " --dextrous" if found.dexterity is not None else ""
+    if found.samples != SAMPLES:
+        asked += f" --samples {found.samples}"
+    return asked + (f" --seed {found.seed}" if found.seed else "")
 
 
 def comparison(found: Sequence[Workspace], views: Sequence[list[View]], units: Units, cores: int | None) -> Picture:
@@ -106,7 +123,8 @@ def _panel(found: Workspace, view: View, line: Any, pose: str, cores: int | None
     if found.dexterity is not None and found.dexterity.orientations:
         words = f"part of the {WORDS[found.dexterity.group]} that can be reached"
         degrees = degrees_in(view, found, words, cores)
-    return panel(view, arms=arms, pose=pose, degrees=degrees)
+    drawn = panel(view, arms=arms, pose=pose, degrees=degrees)
+    return replace(drawn, counts=counts_in(view, found.space))
 
 
 def _subtitle(found: Workspace, units: Units) -> str:

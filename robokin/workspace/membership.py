@@ -15,6 +15,9 @@ from robokin.workspace.placing_joints import closed_form_of
 from robokin.workspace.sampling import moving_chain, moving_gears
 from robokin.workspace.space import Space
 
+BESIDE = 1e-6
+"""How far beside a place, in parts of the arm's size, it is asked for again."""
+
 
 def reachable(space: Space, points: ArrayLike) -> Flags:
     """(m,) whether the tool's origin comes to each of the points (m, 3) [m], with some orientation, within limits.
@@ -31,6 +34,22 @@ def reachable(space: Space, points: ArrayLike) -> Flags:
         return descent_of(space).reachable(p)
     there = np.asarray(solution_count(space, p) > 0)
     there[~there] = descent_of(space).reachable(p[~there])
+    return there
+
+
+def drawn_reachable(space: Space, points: ArrayLike) -> Flags:
+    """(m,) `reachable` as a picture needs it: where closed forms give all configurations, they alone are asked.
+
+    Next to a singular configuration they may lose one; so a place that they deny is asked for on both sides, too.
+    Searches for all that is just outside of a boundary would take twenty times as long.
+    """
+    p = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+    if not counted(space):
+        return reachable(space, p)
+    there = np.asarray(solution_count(space, p) > 0)
+    for direction in np.eye(3) if space.basis is None else space.basis.T:
+        out, step = np.flatnonzero(~there), BESIDE * space.size * direction
+        there[out] = (solution_count(space, p[out] + step) > 0) & (solution_count(space, p[out] - step) > 0)
     return there
 
 
