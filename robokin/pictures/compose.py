@@ -188,7 +188,7 @@ def counts_in(view: View, space: Space) -> GridTable | None:
 
 
 def cloud(space: Space, seed: int = 0, arms: Sequence[Array] = (), cut: bool = False) -> Cloud:
-    """Points all over the reachable set, evenly: one to a cell; `cut` takes out the quarter in front."""
+    """Points all over the reachable set, evenly: one to a cell; `cut` takes out the half in front, as a page does."""
     p = sampled(space, 4 * SHADOW, seed)
     low, size = p.min(axis=0), np.ptp(p, axis=0)
     if not space.dimension:
@@ -204,8 +204,9 @@ def cloud(space: Space, seed: int = 0, arms: Sequence[Array] = (), cut: bool = F
         step /= 1.1
     chosen = p[np.sort(keep)]
     if cut:
-        middle = 0.5 * (p.min(axis=0) + p.max(axis=0))
-        chosen = chosen[~((chosen[:, 0] > middle[0]) & (chosen[:, 1] < middle[1]))]
+        section = section_view(space)
+        middle = 0.5 * (p.min(axis=0) + p.max(axis=0)) if section is None else section.origin
+        chosen = chosen[chosen[:, 1] >= middle[1]]
     return Cloud(chosen, chosen[:, 2], "", list(arms))
 
 

@@ -123,7 +123,8 @@ def _gaps(space: Space, view: View, axis: Array, low: Array, step: float, shape:
     gaps[node[open_[some]], rank[some], 0] = following[open_[some]] - 0.5 * wide[open_[some]]
     gaps[node[open_[some]], rank[some], 1] = 0.5 * wide[open_[some]]
     gaps[..., 0] = np.mod(gaps[..., 0], 2.0 * np.pi)
-    gaps, known = gaps.reshape(*shape, count, 2), known.reshape(shape)
+    gaps = np.asarray(gaps.reshape(*shape, count, 2))
+    known = known.reshape(shape)
     # About the axis the other side has the same, half a turn on.
     if low[0] < 0.0 and shape[0] > 2:
         gaps[0], known[0] = gaps[2], known[2]

@@ -38,6 +38,9 @@ MARGIN = 0.04
 FILL, EDGE, FREE, ARM = "#cfe2f1", "#1b4b72", "#8a8f94", "#c8551b"
 """Colours of the set, its boundary, the boundary without limits, the arm."""
 
+SKIN = ("#55799a", "#93b8d8", "#cfe2f1")
+"""Colours of a solid from its lowest to its highest place: those of a page's surface in the shade and in the light."""
+
 MAP = "viridis"
 """Colours of a fraction: even to the eye, and in grey and to the colour-blind."""
 
@@ -234,11 +237,12 @@ def _degrees(axes: Axes, panel: Panel, degrees: OrientationDegrees, scale: float
 
 
 def _cloud(axes: Any, cloud: Cloud, scale: float, unit: str) -> Any:
+    from matplotlib.colors import LinearSegmentedColormap
     from matplotlib.ticker import MaxNLocator
 
     points = cloud.points * scale
-    height = not cloud.meaning
-    drawn = axes.scatter(*points.T, c=cloud.values * (scale if height else 1.0), cmap=MAP, s=4.0, linewidths=0.0,
+    colours = MAP if cloud.meaning else LinearSegmentedColormap.from_list("skin", SKIN)
+    drawn = axes.scatter(*points.T, c=cloud.values, cmap=colours, s=4.0, linewidths=0.0,
                          alpha=0.9, depthshade=False, rasterized=True, zorder=1)  # fmt: skip
     for arm in cloud.arms:
         axes.plot(*(arm * scale).T, color=ARM, linewidth=2.6, marker="o", markersize=4.5, markerfacecolor="white",
