@@ -52,6 +52,12 @@ PAGES: dict[str, Callable[[], bytes]] = {
 }
 
 
+SAMPLE = ("arm", "tree", "mechanism", "planar workspace", "open solid", "solid dexterity", "surface")
+"""Kinds that are looked at each time; the others are like one of them."""
+
+KINDS = [kind if kind in SAMPLE else pytest.param(kind, marks=pytest.mark.slow) for kind in PAGES]
+
+
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     """The file of a page by its kind, made when it is first asked for."""
@@ -77,7 +83,7 @@ def opened(path: Path, width: int = 1280, theme: str = "light", fragment: str = 
 
 
 @needs_browser
-@pytest.mark.parametrize("kind", PAGES)
+@pytest.mark.parametrize("kind", KINDS)
 def test_nothing_overlaps_and_all_can_be_read_at_every_width_in_both_themes(kind, pages):
     tab = opened(pages(kind))
     wrong = []
@@ -93,14 +99,14 @@ def test_nothing_overlaps_and_all_can_be_read_at_every_width_in_both_themes(kind
 
 
 @needs_browser
-@pytest.mark.parametrize("kind", PAGES)
+@pytest.mark.parametrize("kind", KINDS)
 def test_a_page_is_small_and_asks_for_nothing(kind, pages):
     size = pages(kind).stat().st_size
     assert size < (500_000 if "workspace" in PAGES[kind].__code__.co_names else 200_000)
 
 
 @needs_browser
-@pytest.mark.parametrize("kind", PAGES)
+@pytest.mark.parametrize("kind", KINDS)
 def test_the_tab_key_comes_to_every_control_in_order_and_is_seen(kind, pages):
     tab = opened(pages(kind))
     count = tab.run("document.activeElement.blur(); return checks.stops().length;")
@@ -112,17 +118,21 @@ def test_the_tab_key_comes_to_every_control_in_order_and_is_seen(kind, pages):
     assert not [stop["name"] for stop in found if not stop["seen"]]
 
 
-MOVED = "await frame(); await frame(); return [checks.drawn(), [azimuth, elevation], zoom, shift];"
+# A slow machine draws coarsely what moves, and finely what stands.
+MOVED = (
+    "do await frame(); while (waiting || (typeof coarse !== 'undefined' && coarse));"
+    "return [checks.drawn(), [azimuth, elevation], zoom, shift];"
+)
 
 
 @needs_browser
-@pytest.mark.parametrize("kind", PAGES)
+@pytest.mark.parametrize("kind", KINDS)
 def test_keys_turn_and_zoom_and_begin_again(kind, pages):
     tab = opened(pages(kind))
     tab.run("canvas.focus();")
     first = tab.run(MOVED)
     seen = [first]
-    for key in ("ArrowLeft", "ArrowUp", "+", "-", "0"):
+    for key in ("ArrowLeft", "ArrowDown", "+", "-", "0"):
         tab.press(key)
         seen.append(tab.run(MOVED))
     pictures = [state[0] for state in seen]
@@ -133,7 +143,7 @@ def test_keys_turn_and_zoom_and_begin_again(kind, pages):
 
 
 @needs_browser
-@pytest.mark.parametrize("kind", PAGES)
+@pytest.mark.parametrize("kind", KINDS)
 def test_one_finger_turns_and_two_zoom(kind, pages):
     tab = opened(pages(kind), 390)
     tab.shape(390, WIDTHS[390], touch=True)

@@ -79,7 +79,7 @@ def test_cut_keys_place_link_and_command(found, tmp_path):
     seen = evaluate(page, script, tmp_path)
     assert isinstance(seen, dict), seen
     first, x, z, other, towards, again = seen["seen"]
-    assert first == again == "kept: y ≥ 0 m"
+    assert first == again == "kept: y ≥ 0 mm"
     assert x.startswith("kept: x ≤")
     assert z.startswith("kept: z ≤")
     assert other.startswith("kept: z ≥")
@@ -88,7 +88,7 @@ def test_cut_keys_place_link_and_command(found, tmp_path):
     space = found("scara").space
     for place, told in seen["places"][:: max(len(seen["places"]) // 40, 1)]:
         numbers = [int(word) for word in told.split(" · ")[2].split()[::2] if word.isdigit()]
-        beside = np.array(place) + 0.02 * np.stack(np.meshgrid(*[[-1, 0, 1]] * 3), axis=-1).reshape(-1, 3)
+        beside = 1e-3 * np.array(place) + 0.02 * np.stack(np.meshgrid(*[[-1, 0, 1]] * 3), axis=-1).reshape(-1, 3)
         assert set(numbers) <= {*solution_count(space, beside).tolist(), 1}, told
     assert seen["command"].startswith("robokin workspace scara --at=")
     tab = browser()
