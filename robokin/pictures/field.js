@@ -91,7 +91,7 @@ function fieldOf(solid) {
           const middle = gaps[2 * (at * most + g)] / 65535 * TURN, half = gaps[2 * (at * most + g) + 1] * scale + solid.closed;
           let away = Math.abs(k / nk * TURN - middle) % TURN;
           if (away > Math.PI) away = TURN - away;
-          value = Math.min(value, (away - half) * r);
+          value = Math.min(value, (away - half) * (half < 0 ? Math.max(r, 4 * solid.step) : r));
         }
         V[at * nk + k] = value;
       }

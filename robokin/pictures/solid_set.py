@@ -34,6 +34,9 @@ BLOCK_NODES = 40
 CONFIGURATIONS = 1 << 19
 """Configurations that show at which angles a place of the section is reached: some hundred for each."""
 
+ENOUGH = 12
+"""Configurations at a place from which on its gaps are believed."""
+
 MOST_GAPS = 3
 """Gaps of a place at most: of a joint that turns by a third of a turn there may be as many."""
 
@@ -114,7 +117,9 @@ def _gaps(space: Space, view: View, axis: Array, low: Array, step: float, shape:
     gaps = np.zeros((shape[0] * shape[1], count, 2))
     gaps[..., 1] = CLOSED
     known = np.zeros(shape[0] * shape[1], dtype=bool)
-    known[node[where]] = True
+    # Where few fell nothing is known of the ends, if there are places enough where many did.
+    fell = np.diff(np.append(where, len(node)))
+    known[node[where[fell >= min(ENOUGH, int(np.median(fell)))]]] = True
     open_ = np.flatnonzero(wide > 0.0)
     # The widest of each node first.
     open_ = open_[np.lexsort((-wide[open_], number[open_]))]
