@@ -60,6 +60,9 @@ MOST_PIECES = 10
 SAME = 1e-3
 """Pieces of two arms whose ends are nearer than this part of the arm's length are one piece to the eye."""
 
+INSIDE = 0.98
+"""The part of a joint's radius within which nothing of what it hides comes to light."""
+
 AXIS, SHAFT = 0.11, 0.0042
 """Length and radius of the arrows of a frame, as parts of the arm's length."""
 
@@ -92,7 +95,11 @@ def arm_faces(
     drawn: what arms before have drawn; a ghost's piece that falls together with one of those is left out.
     """
     placed = [(bar, *ends_of(bar, frames)) for bar in arm.bars]
-    joints = [entry for entry in placed if entry[0].role in ("revolute", "prismatic")]
+    joints = [
+        (a, (b - a) / np.linalg.norm(b - a), float(np.linalg.norm(b - a)), (INSIDE * bar.width) ** 2)
+        for bar, a, b in placed
+        if bar.role in ("revolute", "prismatic")
+    ]
     for bar, a, b in placed:
         if ghost is not None and bar.role in ("stroke", "base"):
             continue
@@ -141,12 +148,15 @@ def _palm_faces(corners: Array, eye: Array, paint: Array, width: float) -> Itera
                     yield Face(np.array([p + u, p + u + v, p + v]), shade)
 
 
-def _inside(point: Array, joints: Sequence[tuple[Bar, Array, Array]]) -> bool:
-    """Whether a point (3,) [m] is within a joint: what is there cannot be seen, but its order would be in doubt."""
-    for bar, a, b in joints:
-        d = (b - a) / np.linalg.norm(b - a)
-        along = (point - a) @ d
-        if 0.0 < along < np.linalg.norm(b - a) and np.linalg.norm(point - a - along * d) < 0.98 * bar.width:
+def _inside(point: Array, joints: Sequence[tuple[Array, Array, float, float]]) -> bool:
+    """Whether a point (3,) [m] is within a joint: what is there cannot be seen, but its order would be in doubt.
+
+    joints: of each where it begins, its direction, its length and the square of the radius that counts.
+    """
+    for a, d, long, square in joints:
+        aside = point - a
+        along = float(aside @ d)
+        if 0.0 < along < long and float(aside @ aside) - along * along < square:
             return True
     return False
 
