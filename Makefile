@@ -14,7 +14,7 @@ WORKERS ?= $(shell $(PYTHON) -c 'import os; n = len(os.sched_getaffinity(0)) if 
 PYTEST  := python -m pytest --quiet --numprocesses $(WORKERS) --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow test-oldest test-newest lint fuzz bench completeness coverage corpora wheel audit docs playground lock clean
+.PHONY: help demo test test-slow test-oldest test-newest lint fuzz bench completeness coverage corpora wheel audit docs playground site site-check lock clean
 
 help:            ## what can be made
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
@@ -91,6 +91,27 @@ docs: $(VENV)/dev ## rerun every command of README.md and docs/, and write what 
 playground: $(VENV)/dev ## robokin in the browser, as files that any server serves, in build/playground
 	$(BIN)/python docs/playground/build.py build/playground
 
+# The site's generator stands apart from what the project needs.
+$(VENV)-site/installed: .ci/requirements/user.txt .ci/requirements/build.txt .ci/requirements/site.txt pyproject.toml
+	$(PYTHON) -m venv $(VENV)-site
+	$(VENV)-site/bin/$(LOCKED) -r .ci/requirements/user.txt -r .ci/requirements/build.txt -r .ci/requirements/site.txt
+	$(VENV)-site/bin/$(HERE)
+	@touch $@
+
+# What stands in this folder is served as playground/ of the site.
+PLAYGROUND ?= $(wildcard build/playground)
+site: $(VENV)-site/installed ## docs/ and a gallery of the library as a static site in build/site, its links looked at
+	$(VENV)-site/bin/python -m website $(if $(PLAYGROUND),--playground $(PLAYGROUND))
+
+# axe and a driver for the browser from npm, as the lock beside the check has them.
+build/site-check: website/accessibility/package-lock.json website/accessibility/check.mjs
+	mkdir -p $@ && cp website/accessibility/*.json website/accessibility/check.mjs $@
+	cd $@ && npm ci --silent --no-audit --no-fund
+	@touch $@
+
+site-check: build/site-check ## the built site in chromium: accessibility, both themes, three widths; needs node and chromium
+	node build/site-check/check.mjs build/site $(PICTURES)
+
 # One resolution for all: what is pinned for developers is what users and releases get.
 COMPILE := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --upgrade --custom-compile-command 'make lock'
 lock: $(VENV)/release ## renew the locks in .ci/requirements/ with today's versions
@@ -98,7 +119,8 @@ lock: $(VENV)/release ## renew the locks in .ci/requirements/ with today's versi
 	$(BIN)/$(COMPILE) -o .ci/requirements/user.txt pyproject.toml --constraint .ci/requirements/dev.txt
 	$(BIN)/$(COMPILE) -o .ci/requirements/build.txt --group build --constraint .ci/requirements/dev.txt
 	$(BIN)/$(COMPILE) -o .ci/requirements/release.txt --group release --constraint .ci/requirements/dev.txt
+	$(BIN)/$(COMPILE) -o .ci/requirements/site.txt --group site --constraint .ci/requirements/dev.txt
 	$(BIN)/$(COMPILE) -o .ci/requirements/oldest.txt pyproject.toml --extra plot --group test --resolution lowest-direct
 
 clean:           ## remove the environments and what was built
-	rm -rf $(VENV) $(VENV)-oldest $(VENV)-newest dist build
+	rm -rf $(VENV) $(VENV)-oldest $(VENV)-newest $(VENV)-site dist build

@@ -14,7 +14,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 
-LOCKS = ("user", "build", "dev", "release")
+LOCKS = ("user", "build", "dev", "release", "site")
 
 IGNORED: dict[str, str] = {}
 """Identifiers of vulnerabilities that do not concern the project, each with the reason."""

@@ -18,7 +18,7 @@ from packaging.version import Version
 
 ROOT = Path(__file__).parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-LOCKS = ("user", "build", "dev", "release", "oldest")
+LOCKS = ("user", "build", "dev", "release", "site", "oldest")
 
 
 def group(name):
@@ -39,6 +39,7 @@ ASKED = {
     "build": group("build"),
     "dev": USER + PLOT + FAR + group("dev"),
     "release": group("release"),
+    "site": group("site"),
     "oldest": USER + PLOT + group("test"),
 }
 
@@ -79,7 +80,7 @@ def test_a_lock_is_in_step_with_what_is_asked(name):
         assert any(asked.specifier.contains(version) for version in found[canonicalize_name(asked.name)]), asked
 
 
-@pytest.mark.parametrize("name", ["user", "build", "release"])
+@pytest.mark.parametrize("name", ["user", "build", "release", "site"])
 def test_users_and_releases_get_the_versions_that_developers_test(name):
     tested, found = versions("dev"), versions(name)
     for package in tested.keys() & found.keys():

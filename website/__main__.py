@@ -70,8 +70,9 @@ def sphinx(source: Path, site: Path) -> bool:
     shutil.rmtree(doctrees, ignore_errors=True)
     arguments = ["-q", "-W", "--keep-going", "-b", "html", "-c", str(SETTINGS), "-d", str(doctrees)]
     done = build_main([*arguments, str(source), str(site)])
-    for name in (".buildinfo", "objects.inv", ".doctrees"):
+    for name in (".buildinfo", "objects.inv"):
         (site / name).unlink(missing_ok=True)
+    (site / ".nojekyll").touch()  # GitHub's pages leave out _static otherwise
     return done == 0
 
 

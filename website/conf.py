@@ -13,12 +13,14 @@ suppress_warnings = ["misc.highlighting_failure"]  # a console block that holds 
 myst_heading_anchors = 4  # named as on GitHub
 html_theme = "pydata_sphinx_theme"
 html_title = "robokin"
+templates_path = ["templates"]
 html_static_path = ["theme"]
 html_css_files = ["site.css"]
 html_js_files = [("site.js", {"defer": "defer"})]
+html_use_index = False
 html_copy_source = False
 html_show_sourcelink = False
-html_sidebars = {"index": [], "gallery/*": [], "docs/api": [], "CHANGELOG": [], "SECURITY": []}
+html_sidebars = {"index": [], "gallery/*": [], "docs/api": []}
 html_theme_options = {
     "logo": {"text": "robokin"},
     "navigation_with_keys": False,

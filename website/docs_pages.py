@@ -1,7 +1,7 @@
 """The pages of docs/, and those at the top of the project, as the source of the site.
 
-They stay where they are, so that links between them lead where they lead on a forge. Only what a forge does by itself is
-done here: README.md is the page of its folder, a linked folder lists its files, a notebook is a page.
+They stay where they are, so that links between them lead where they lead on a forge. Only what a forge does by
+itself is done here: README.md is the page of its folder, a linked folder lists its files, a notebook is a page.
 """
 
 from __future__ import annotations
@@ -52,7 +52,10 @@ def write_docs(source: Path, playground: bool) -> None:
         else:
             trees.append(toctree([link for link in links if link != "api.md"], title))
     with index.open("a", encoding="utf-8") as stream:
-        stream.write("\n\n" + "\n\n".join([toctree(["tour.md"]), *trees]))
+        stream.write(
+            "\n\n"
+            + "\n\n".join([toctree(["tour.md"]), *trees, toctree(["/CHANGELOG.md", "/SECURITY.md"], "The project")])
+        )
     headed = [f"docs/{title.lower()}.md" for title in HEADED if title in parts]
     _write_home(source, [*headed, "gallery/index.md", "docs/api.md"], playground)
 
@@ -105,7 +108,8 @@ def _output_text(output: dict[str, object]) -> str:
         return f"```text\n{''.join(output['text']).rstrip()}\n```"  # type: ignore[arg-type]
     data: dict[str, list[str] | str] = output.get("data", {})  # type: ignore[assignment]
     if "image/png" in data:
-        return f'<img alt="what the cell above draws" src="data:image/png;base64,{"".join(data["image/png"]).strip()}">'
+        drawn = "".join(data["image/png"]).strip()
+        return f'<img alt="what the cell above draws" src="data:image/png;base64,{drawn}">'
     if "image/svg+xml" in data:
         return re.sub(r"\n\s*\n", "\n", "".join(data["image/svg+xml"]))
     if "text/html" in data and "<script" not in "".join(data["text/html"]):

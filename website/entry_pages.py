@@ -19,6 +19,7 @@ from robokin.number_text import show
 from robokin.pictures.arm import default_configuration
 from robokin.pictures.drawn_arm import arm_picture
 from robokin.pictures.drawn_mechanism import picture_of
+from robokin.reports.table_files import markdown_table
 from website.thumbnails import HEIGHT, WIDTH, home_scene, thumbnail
 
 STEPS = 96
@@ -169,9 +170,9 @@ def first_pose(entry: Robot | Tree) -> str:
 
 
 def two_columns(lines: list[tuple[str, str]]) -> str:
-    """Facts as a table without a heading of its own."""
+    """Facts as a table."""
     rows = "\n".join(f"| {name} | {value} |" for name, value in lines)
-    return f"| fact | |\n| :-- | :-- |\n{rows}"
+    return f"| fact | value |\n| :-- | :-- |\n{rows}"
 
 
 def plain(text: str) -> str:
@@ -217,7 +218,9 @@ def _turning(id: str, name: str) -> str:
 
 def _table(entry: Entry, record: dict[str, Any]) -> str:
     """The table as published; of a mechanism its joints, of a base its wheels."""
-    if isinstance(entry, Robot | Tree):
+    if isinstance(entry, Robot):
+        return markdown_table(record).decode().partition("\n\n")[2]
+    if isinstance(entry, Tree):
         return printed("convert", record["id"], "-f", "markdown").partition("\n\n")[2]
     if isinstance(entry, Mechanism):
         lines = ["| joint | type | links | at | axis |", "| :-- | :-- | :-- | :-- | :-- |"]

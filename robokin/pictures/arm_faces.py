@@ -9,7 +9,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.pictures.arm import ArmShape
-from robokin.pictures.arm_bars import LINK, SQUARE, Bar, ends_of, perpendicular
+from robokin.pictures.arm_bars import LINK, SQUARE, ends_of, perpendicular
 
 COLOURS = {
     "link": "#a9bac9", "slide": "#e5b48f", "revolute": "#2b628f", "prismatic": "#c8551b", "stroke": "#b98a6a",

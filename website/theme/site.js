@@ -17,7 +17,12 @@ if (wanted) {
   wanted.addEventListener("input", look);
   look();
 }
-// What scrolls sideways can be reached by the keyboard.
-for (const block of document.querySelectorAll("div.highlight pre, .pst-scrollable-table-container")) {
-  if (block.scrollWidth > block.clientWidth) block.tabIndex = 0;
-}
+// What scrolls sideways can be reached by the keyboard, also when a window has become narrow.
+const reach = () => {
+  for (const block of document.querySelectorAll("div.highlight pre, .pst-scrollable-table-container")) {
+    if (block.scrollWidth > block.clientWidth) block.tabIndex = 0;
+    else block.removeAttribute("tabindex");
+  }
+};
+window.addEventListener("resize", reach);
+window.addEventListener("load", reach);
