@@ -70,7 +70,7 @@ def sphinx(source: Path, site: Path) -> bool:
     shutil.rmtree(doctrees, ignore_errors=True)
     arguments = ["-q", "-W", "--keep-going", "-b", "html", "-c", str(SETTINGS), "-d", str(doctrees)]
     done = build_main([*arguments, str(source), str(site)])
-    for name in (".buildinfo", "objects.inv"):
+    for name in (".buildinfo", "objects.inv", "_static/webpack-macros.html"):
         (site / name).unlink(missing_ok=True)
     (site / ".nojekyll").touch()  # GitHub's pages leave out _static otherwise
     return done == 0
