@@ -52,10 +52,8 @@ def write_docs(source: Path, playground: bool) -> None:
         else:
             trees.append(toctree([link for link in links if link != "api.md"], title))
     with index.open("a", encoding="utf-8") as stream:
-        stream.write(
-            "\n\n"
-            + "\n\n".join([toctree(["tour.md"]), *trees, toctree(["/CHANGELOG.md", "/SECURITY.md"], "The project")])
-        )
+        project = toctree(["/CHANGELOG.md", "/SECURITY.md"], "The project")
+        stream.write("\n\n" + "\n\n".join([toctree(["tour.md"]), *trees, project]))
     headed = [f"docs/{title.lower()}.md" for title in HEADED if title in parts]
     _write_home(source, [*headed, "gallery/index.md", "docs/api.md"], playground)
 
@@ -157,9 +155,7 @@ def _write_home(source: Path, headed: list[str], playground: bool) -> None:
     at = picture.end()
     text = text[:at] + "\n\n" + " · ".join(ways) + text[at:]
     pages = ["docs/index.md", *headed]
-    home.write_text(
-        f"{text}\n\n{toctree(pages)}\n```{{toctree}}\n:hidden:\nCHANGELOG\nSECURITY\n```\n", encoding="utf-8"
-    )
+    home.write_text(f"{text}\n\n{toctree(pages)}", encoding="utf-8")
 
 
 PLAYGROUND = """# Playground
