@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from robokin.grading.marks import check_table as check_table
     from robokin.grading.tolerance import Tolerance as Tolerance
     from robokin.grading.tolerance import default_tolerance as default_tolerance
-    from robokin.inverse.joint_paths import follow_line as follow_line
     from robokin.inverse.joint_paths import interpolate_joints as interpolate_joints
+    from robokin.inverse.paths_to_poses import follow_line as follow_line
     from robokin.inverse.solve import solve_ik as solve_ik
     from robokin.inverse.swivel_angles import swivel_angle as swivel_angle
     from robokin.inverse.swivel_angles import swivel_solutions as swivel_solutions
@@ -94,7 +94,7 @@ _HOMES = {
     "tip_poses": "robokin.kinematics.tips",
     "differential_kinematics": "robokin.kinematics.velocity",
     "singular_configurations": "robokin.kinematics.singular",
-    "follow_line": "robokin.inverse.joint_paths",
+    "follow_line": "robokin.inverse.paths_to_poses",
     "interpolate_joints": "robokin.inverse.joint_paths",
     "trajectory": "robokin.inverse.trajectories",
     "mobility_of": "robokin.mobility.verdict",

@@ -10,17 +10,17 @@ import numpy as np
 from robokin.arrays import Array, Index
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.coupled_search import coupled_tips
+from robokin.inverse.listed_rows import ListedRows, leads
 from robokin.inverse.numeric.driven_descent import driven_ends
 from robokin.inverse.numeric.driven_tips import errors_and_slopes
 from robokin.inverse.numeric.least_squares import descend
-from robokin.inverse.self_motion.nearest_member import nearest_on
-from robokin.inverse.self_motion.solution_sets import families
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import CLOSES
 from robokin.kernel.damped_newton import brought_down, limited, singular_step
 from robokin.kernel.frames import pose
 from robokin.kernel.residual import error_and_jacobian
 from robokin.kinematics.jacobian import jacobian
+from robokin.kinematics.velocity import is_singular
 from robokin.model import CoupledRobot, Robot
 from robokin.spatial.angles import circled
 
@@ -30,6 +30,13 @@ singularity, and there a step is halved while it gets shorter by that."""
 
 HALVINGS = 26
 """How often a step is halved at most, to 1e-8 of itself. A joint that still moves by more than NEAR jumps."""
+
+ASKED = 9
+"""Of steps that do not arrive the last of so many asks for all solutions."""
+
+CREEPING, CREPT = 64.0, 64
+"""Steps up to this many of the shortest, and how many of them are taken at most: beside the poses that an arm can take
+one after the other closes within rounding, and none of them leads on."""
 
 BEGUN = 1e-6
 """Part of the line after which its solutions tell how it begins: they are then 1e-6 from where they begin, or 1e-3
@@ -47,14 +54,20 @@ LONGEST = 0.3
 DAMPING = 1e-3
 """Damping of these steps as a part of the squared error."""
 
+CONTINUES = 1e-2
+"""The solutions there are farther from the configuration that they come from [rad | size] at no regular beginning."""
+
+ITSELF = 1e-4
+"""Configurations [rad | size] that differ by less are one beginning: no more is known of it by solutions beside it."""
+
+STILL = 1e-9
+"""Moves of joints below this [rad | size] are rounding."""
+
 AROUND = (1e-4, 1e-3, 1e-2, 0.05, 0.3)
 """How far around a configuration [rad | size] descents start where steps from it do not arrive."""
 
 AROUND_EACH = 4
 """How many of them so far: of two ways out of a stretched arm one of them finds each."""
-
-BLOCK = 1024
-"""Poses that are solved together."""
 
 
 class Follower:
@@ -66,38 +79,81 @@ class Follower:
         self.scale = np.where(robot.revolute, 1.0, self.analysis.size)
         self.spare = bool(self.analysis.redundancy or self.analysis.idle)
         self.numeric = self.spare or self.analysis.solver is None
-        self.block: tuple[int, Array, Index] | None = None
         self.poses = at(s)
-        self.ahead = np.zeros(robot.n)
+        self.begin(np.zeros(robot.n))
+        self.rows = ListedRows(self.solved, self.poses, s, self.scale, robot.revolute)
+
+    def solved(self, poses: Array) -> tuple[Array, Index]:
+        """All configurations (m, k, n) at poses (m, 4, 4), padded with NaN, and how many they are (m,)."""
+        batch = solve_many(self.robot, poses, limits=False, task=self.task)
+        return batch.q, batch.count
+
+    halvings = HALVINGS
+    """How often a step is halved at most."""
+
+    def begin(self, q: Array) -> None:
+        """A branch begins at q (n,), of which it is not known where it leads."""
+        self.ahead = np.zeros_like(q)
+        self.rate = np.zeros_like(q)
+
+    def run(self, q: Array, i: int) -> Array:
+        """The rows (r, n) from place i on that go on plainly from q (n,) at the place before; r may be 0."""
+        if self.numeric:
+            return np.empty((0, len(q)))
+        rows, self.rate = self.rows.run(q, self.rate, i, NEAR)
+        return rows
 
     def advance(self, q: Array, before: float, i: int) -> tuple[float, Array, str]:
         """From q (n,) at `before` to place i: how far it got, with which q, and what stopped it (unreachable, jump)."""
         end = float(self.s[i])
-        found = self.track(q, self.poses[i], self.ahead) if self.numeric else self.chosen(self.listed(i), q)
+        found = self.track(q, self.poses[i], self.ahead) if self.numeric else None
         if found is not None and self.move(q, found) <= NEAR:
             # Steps grow and shrink slowly with the time law: the last one is a good guess of the next. Not where joints
             # are to spare: what they did with the tool at rest would go on and on.
             if not self.spare:
                 self.ahead = found - q
             return end, found, ""
-        self.ahead = np.zeros_like(q)
+        self.begin(q)
         return self.halved(q, before, end)
 
     def halved(self, q: Array, before: float, end: float) -> tuple[float, Array, str]:
         """The same by steps as short as they must be."""
-        at, step, least = before, end - before, (end - before) * 0.5**HALVINGS
-        why = ""
+        at, step, least = before, end - before, (end - before) * 0.5**self.halvings
+        why, rate, failed, crept = "", np.zeros_like(q), 0, 0
         while at < end:
             ahead = min(at + step, end)
-            found = self.nearest(q, ahead)
-            if found is not None and self.move(q, found) <= NEAR:
+            led = q if self.numeric else q + rate * (ahead - at)
+            found = self.stepped(led, ahead)
+            if not self.numeric and (found is None or not self._follows(q, led, found)):
+                # All solutions tell more than steps to one, and take long beside a singularity.
+                failed += 1
+                found = self.nearest(led, ahead) if failed % ASKED == 0 or step <= 2.0 * least else None
+            crept += step <= CREEPING * least
+            if found is not None and self._follows(q, led, found) and crept <= CREPT:
+                rate = (found - q) / (ahead - at)
                 at, q, step = ahead, found, 2.0 * step
                 continue
-            why = "unreachable" if found is None else "jump"
+            why = "jump" if found is not None and not self._follows(q, led, found) else "unreachable"
+            if crept > CREPT:
+                return at, q, why
             step /= 2.0
             if step < least:
                 return at, q, why
         return end, q, ""
+
+    def _follows(self, q: Array, led: Array, found: Array) -> bool:
+        """Whether a step from q (n,), where the last ones lead to led (n,), comes to `found` (n,) on its branch."""
+        far = self.move(q, found)
+        return far <= NEAR and (self.numeric or bool(leads(np.array(self.move(led, found)), np.array(far))))
+
+    def stepped(self, q: Array, s: float) -> Array | None:
+        """The configuration (n,) at s that Newton's steps lead to from q (n,), or None where they do not arrive."""
+        T = self.at(np.array([s]))[0]
+        if self.numeric:
+            return self.track(q, T, np.zeros_like(q))
+        x, T = self._opened(q, T)
+        found = self.steps(x, T[None])
+        return None if found is None else found[: len(q)]
 
     def nearest(self, q: Array, s: float) -> Array | None:
         """The configuration (n,) at s that is nearest to q, or None where there is none."""
@@ -107,42 +163,27 @@ class Follower:
         batch = solve_many(self.robot, self.at(np.array([s])), limits=False, near=q, task=self.task)
         return self.chosen(batch.q[0, : batch.count[0]], q)
 
-    def turned_start(self, q: Array, i: int) -> Array | None:
-        """A configuration (n,) with the pose of q (n,), from which a line goes on that q itself does not begin.
+    def beginnings(self, q: Array) -> list[tuple[Array, Array]]:
+        """How ways go on from a singular configuration q (n,): where each begins, and where it is at the part `BEGUN`.
 
-        At a singular start joints can trade motion while the tool stands still; the solutions a little way along the
-        line tell from which member of that self-motion it goes on. None where there is none.
+        At a singular pose solutions meet, or joints can trade motion while the tool stands still: the solutions a
+        little way along tell which ways there are, and from which configurations with the pose of q they go on. Where
+        some go on from q itself these alone. Empty where q is regular, and where solutions are not listed.
         """
-        if self.numeric:
-            return None
-        chain, size = self.analysis.own, self.analysis.size
-        T = self.at(self.s[i - 1 : i])
-        batch = solve_many(self.robot, self.at(self.s[i - 1 : i] + BEGUN), limits=False, near=q, task=self.task)
-        begun = batch.q[0, : batch.count[0]]
-        moving = self.analysis.moving
-        sets = families(chain, T, np.concatenate([q[moving], np.zeros(self.analysis.open)])[None], size).curves[0]
-        wide = np.tile([-np.inf, np.inf], (len(moving), 1))
-        best: Array | None = None
-        for curve in sets:
-            for other in begun:
-                member = nearest_on(curve, chain, T[0], other[moving], wide, size)
-                if member is None:
-                    continue
-                there = q.copy()
-                there[moving] = member
-                start = self.turned(there, q)
-                near = self.move(start, self.turned(other, start)) <= NEAR
-                if near and (best is None or self.move(q, start) < self.move(q, best)):
-                    best = start
-        return best
-
-    def listed(self, i: int) -> Array:
-        """All configurations (k, n) at place i, some poses ahead solved with them."""
-        if self.block is None or not self.block[0] <= i < self.block[0] + BLOCK:
-            batch = solve_many(self.robot, self.poses[i : i + BLOCK], limits=False, task=self.task)
-            self.block = i, batch.q, batch.count
-        first, rows, count = self.block
-        return rows[i - first, : count[i - first]]
+        if self.numeric or not is_singular(self.robot, q, "position" if self.task == "position" else None):
+            return []
+        ways: list[tuple[Array, Array]] = []
+        batch = solve_many(self.robot, self.at(np.array([BEGUN])), limits=False, near=q, task=self.task)
+        for other in batch.q[0, : batch.count[0]]:
+            start = self.nearest(other, 0.0)
+            if start is None or self.move(start, other) > CONTINUES:
+                continue
+            near = self.turned(start, q)
+            # Joints that do not turn stand still to the last digit.
+            near = np.where(np.abs(near - q) <= STILL * self.scale, q, near)
+            ways.append((q if self.move(near, q) <= ITSELF else near, other + near - start))
+        own = [way for way in ways if way[0] is q]
+        return own or ways
 
     def turned(self, x: Array, q: Array) -> Array:
         """A configuration x (n,) with its angles turned as near to q (n,) as they come."""
@@ -159,11 +200,7 @@ class Follower:
     def track(self, q: Array, T: Array, ahead: Array) -> Array | None:
         """The configuration at the pose T (4, 4) that steps of least joint motion lead to from q, or from q + ahead."""
         chain, size, opened = self.analysis.chain, self.analysis.size, self.analysis.open
-        x = np.concatenate([q, np.zeros(opened)])
-        if opened:
-            # What is left open turns from where the tool is: its rotation is the target's.
-            T = T.copy()
-            T[:3, :3] = pose(chain, x)[:3, :3]
+        x, T = self._opened(q, T)
         found = self.steps(np.concatenate([q + ahead, np.zeros(opened)]), T[None])
         if found is not None and (self.robot.within_limits(found[: len(q)]) or not self.robot.within_limits(q)):
             return found[: len(q)]
@@ -173,6 +210,14 @@ class Follower:
         if np.max(np.abs(error)) <= CLOSES and self.robot.within_limits(q):
             return np.asarray(held[0, : len(q)])
         return None if found is None else found[: len(q)]
+
+    def _opened(self, q: Array, T: Array) -> tuple[Array, Array]:
+        """Joint values q (n,) with those of what is left open, which turns from where the tool is; its target."""
+        x = np.concatenate([q, np.zeros(self.analysis.open)])
+        if self.analysis.open:
+            T = T.copy()
+            T[:3, :3] = pose(self.analysis.chain, x)[:3, :3]
+        return x, T
 
     def steps(self, x: Array, T: Array) -> Array | None:
         """Joint values (k,) that Newton's steps of least motion lead to from x (k,); None where they do not close."""
@@ -208,8 +253,17 @@ class Follows(Protocol):
     def nearest(self, q: Array, s: float) -> Array | None:
         """See `Follower.nearest`."""
 
-    def turned_start(self, q: Array, i: int) -> Array | None:
-        """See `Follower.turned_start`."""
+    def stepped(self, q: Array, s: float) -> Array | None:
+        """See `Follower.stepped`."""
+
+    def begin(self, q: Array) -> None:
+        """See `Follower.begin`."""
+
+    def run(self, q: Array, i: int) -> Array:
+        """See `Follower.run`."""
+
+    def beginnings(self, q: Array) -> list[tuple[Array, Array]]:
+        """See `Follower.beginnings`."""
 
 
 class CoupledFollower:
@@ -228,10 +282,23 @@ class CoupledFollower:
         v = self.follower.nearest(self.drive.motions(q), s)
         return None if v is None else self.drive.variables_for(v)
 
-    def turned_start(self, q: Array, i: int) -> Array | None:
-        """See `Follower.turned_start`."""
-        v = self.follower.turned_start(self.drive.motions(q), i)
+    def stepped(self, q: Array, s: float) -> Array | None:
+        """See `Follower.stepped`."""
+        v = self.follower.stepped(self.drive.motions(q), s)
         return None if v is None else self.drive.variables_for(v)
+
+    def begin(self, q: Array) -> None:
+        """See `Follower.begin`."""
+        self.follower.begin(q)
+
+    def run(self, q: Array, i: int) -> Array:
+        """See `Follower.run`."""
+        return self.drive.variables_for(self.follower.run(self.drive.motions(q), i))
+
+    def beginnings(self, q: Array) -> list[tuple[Array, Array]]:
+        """See `Follower.beginnings`."""
+        ways = self.follower.beginnings(self.drive.motions(q))
+        return [(self.drive.variables_for(start), self.drive.variables_for(begun)) for start, begun in ways]
 
 
 class DrivenFollower(Follower):
@@ -248,7 +315,7 @@ class DrivenFollower(Follower):
         self.scale = self.free.scale
         self.numeric = True
         self.poses = at(s)
-        self.ahead = np.zeros(robot.n)
+        self.begin(np.zeros(robot.n))
         away = np.random.default_rng(0).uniform(-1.0, 1.0, (AROUND_EACH, robot.n))
         moved = jacobian(robot, self.scale * away[0])[: 3 if task == "position" else 6]
         self.spare = bool(np.linalg.matrix_rank(moved * self.scale, tol=1e-9 * np.max(np.abs(moved))) < robot.n)
@@ -292,10 +359,19 @@ class DrivenFollower(Follower):
         return np.asarray(ends[0] * self.scale) if np.max(np.abs(e)) <= 0.1 * CLOSES else None
 
 
-def follower_of(robot: Robot, at: Callable[[Array], Array], task: Literal["pose", "position"], s: Array) -> Follows:
-    """What follows poses at(s), looked up at places s (k,)."""
-    if not isinstance(robot, CoupledRobot):
-        return Follower(robot, at, task, s)
-    if not robot.drive.invertible:
-        return DrivenFollower(robot, at, task, s)
-    return CoupledFollower(robot, Follower(robot.free_motion, at, task, s))
+def follower_of(
+    robot: Robot,
+    at: Callable[[Array], Array],
+    task: Literal["pose", "position"],
+    s: Array,
+    halvings: int = HALVINGS,
+) -> Follows:
+    """What follows poses at(s), looked up at places s (k,); a step is halved up to `halvings` times."""
+    if isinstance(robot, CoupledRobot) and not robot.drive.invertible:
+        follower: Follower = DrivenFollower(robot, at, task, s)
+    else:
+        follower = Follower(robot.free_motion if isinstance(robot, CoupledRobot) else robot, at, task, s)
+    follower.halvings = halvings
+    if isinstance(robot, CoupledRobot) and robot.drive.invertible:
+        return CoupledFollower(robot, follower)
+    return follower

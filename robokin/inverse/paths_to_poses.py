@@ -3,60 +3,75 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Literal
+from dataclasses import replace
+from typing import Any, cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
 from robokin.errors import InputError
+from robokin.expected import expect_choice, expect_flag, expect_whole
+from robokin.inverse.follow import MOST
+from robokin.inverse.followed_curves import branch_starts, follow_curve, passable
 from robokin.inverse.joint_paths import (
     Path,
     PathTask,
-    follow_curve,
     interpolate_joints,
     line_task,
     no_path,
+    one_configuration,
     time_law,
 )
-from robokin.inverse.solutions import Result
-from robokin.inverse.solve import solve_ik
-from robokin.inverse.tool_curves import CircularArc, Line, ToolCurve
-from robokin.inverse.trajectories import Timing, joined, row_times, timed_curve, trajectory
+from robokin.inverse.path_branches import PathBranch, branches_of, with_chosen
+from robokin.inverse.path_goals import Goal, Manner, nearest_to, points_through, tool_curve
+from robokin.inverse.solve import target_poses
+from robokin.inverse.trajectories import joined, reorientation, row_times, timed_curve, trajectory
 from robokin.kinematics.forward import forward_kinematics
+from robokin.kinematics.velocity import is_singular
 from robokin.model import Robot
 
-Way = Literal["joint", "line", "arc"]
+TRIED = 100
+"""Steps of each piece with which branches are tried: which is best must not hang on how many rows are asked for."""
+
+TRIED_HALVINGS = 14
+"""How often a step of these is halved: where a branch that is not taken ends is known to a millionth of the way."""
 
 
-@dataclass(frozen=True, eq=False)
-class Goal:
-    """Where a path goes: joint values q (n,), or a pose T (4, 4) [m] with its task, as `solve_ik` has it."""
+def follow_line(
+    robot: Robot,
+    start: ArrayLike,
+    T: ArrayLike,
+    steps: int = 100,
+    limits: bool = True,
+    task: PathTask | None = None,
+) -> Path:
+    """The tool in a straight line from where it is at `start` to T, the joints on one branch.
 
-    q: Array | None = None
-    T: Array | None = None
-    task: str = "pose"
-
-
-@dataclass(frozen=True, eq=False)
-class Manner:
-    """How a path gets there.
-
-    way: all joints together, or the tool along straight lines or an arc, which goes by the place `via` (3,) [m];
-    limits: whether it ends where a joint leaves them; follows: what follows a line, the whole pose or the position;
-    timing: None for a path without a duration, whose t is from 0 to 1.
+    start: (n,) [rad | m]; T: (4, 4) [m]. `task` is what follows the line: the whole pose, or the position alone, as is
+    taken for arms of up to three joints that place a point. The path ends where a joint leaves its limits (with
+    `limits`), where there is no solution, or where a joint would jump. Where the line goes on from another
+    configuration with the pose of a singular start, joints first turn to it in as many steps more. Raises
+    InputError for other shapes, for what is no pose and for `steps` below 1. The time law is that of
+    `interpolate_joints`.
     """
+    first = one_configuration(robot, start, "start")
+    target = target_poses(T)
+    if target.ndim != 2:
+        raise InputError(f"found targets of shape {target.shape}, expected one, (4, 4)")
+    expect_whole(steps, "steps", 1, MOST)
+    follows = None if task is None else cast(PathTask, expect_choice(task, ("pose", "position"), "task"))
+    manner = Manner("line", limits=expect_flag(limits, "limits"), follows=follows)
+    return joined(_followed(robot, first, [Goal(T=target)], steps, manner))
 
-    way: Way = "joint"
-    via: Array | None = None
-    limits: bool = True
-    follows: PathTask | None = None
-    timing: Timing | None = None
 
+def path_through(robot: Robot, start: Array | Goal, goals: Sequence[Goal], steps: int, manner: Manner) -> Path:
+    """A path from joint values start (n,) [rad | m], or from a pose, through all goals.
 
-def path_through(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> Path:
-    """A path from joint values start (n,) [rad | m] through all goals, to a pose by the solution nearest to the last.
-
+    Joints together go to a pose by the solutions with which the farthest moves, added up from point to point, are
+    least; of redundant arms by the nearest to the last. The tool along lines or an arc goes on the branch of its start;
+    from a pose on that which is best over the whole path, as `path_branches` has it. Where a path does not reach its
+    end, the branches that it might have taken are tried too.
     A position alone keeps the orientation of what was before, where the arm can turn its tool. A pose that is not
     reached makes a path of its start alone. steps: of the whole path by joints, of each piece of a line. A duration is
     of the whole path: pieces of a line share it like the least times that limits allow them, evenly without limits.
@@ -65,63 +80,148 @@ def path_through(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, 
         return _by_joints(robot, start, goals, steps, manner)
     if manner.way == "arc" and len(goals) > 1:
         raise InputError(f"found {len(goals)} ends of an arc, expected one")
-    paths = _pieces(robot, start, goals, steps, manner)
-    # What is not reached counts as a part of the way.
-    paths_left = len(goals) - len(paths)
-    whole = joined(paths, manner.timing.rate if manner.timing is not None else None)
-    if not paths_left:
-        return whole
-    share = len(paths) / len(goals)
-    events = tuple(replace(event, fraction=event.fraction * share) for event in whole.events)
-    asked = manner.timing.duration if manner.timing is not None else None
-    duration = whole.duration if asked is None else asked
-    return replace(whole, s=whole.s * share, fraction=whole.fraction * share, events=events, duration=duration)
+    if isinstance(start, Goal):
+        branches = _branches(robot, start, goals, manner, False)
+        if not branches:
+            assert start.T is not None
+            found = nearest_to(robot, np.zeros(robot.n), start.T, manner.follows or line_task(robot), False)
+            raise InputError(f"the start is {found.reason or 'not reached'}, expected a pose that the arm can take")
+        first = branches[0].start
+        path = _along(robot, first, goals, steps, manner)
+        return replace(path, branches=with_chosen(robot, branches, path))
+    path = _along(robot, start, goals, steps, manner)
+    if path.complete:
+        return path
+    branches = _branches(robot, Goal(T=forward_kinematics(robot, start)), goals, manner, True)
+    return replace(path, branches=with_chosen(robot, branches, path))
 
 
-def _pieces(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> list[Path]:
-    """The tool along a line to each goal, or along an arc, as far as it gets."""
+def _branches(robot: Robot, first: Goal, goals: Sequence[Goal], manner: Manner, fixed: bool) -> tuple[PathBranch, ...]:
+    """The branches of a path of the tool from a pose; none where no arm could go on and the start is `fixed`."""
+    assert first.T is not None
+    free = replace(manner, timing=None, halvings=TRIED_HALVINGS)
+    guess = nearest_to(robot, np.zeros(robot.n), first.T, manner.follows or line_task(robot), False)
+    if not guess.solutions:
+        return ()
+    q = guess.solutions[0].q
+    asked = tool_curve(robot, q, goals[0], free)
+    if isinstance(asked, str):
+        return ()
+    curve, follows = asked
+    task = follows or line_task(robot)
+    if fixed and not (all(_attainable(robot, goal, free) for goal in goals) and passable(robot, curve, task, TRIED)):
+        return ()
+    starts = branch_starts(robot, curve, task)
+
+    def follow(start: Array, limits: bool) -> Path:
+        paths = _followed(robot, start, goals, TRIED, replace(free, limits=limits))
+        return _of_all(joined(paths), len(goals), _reached(paths))
+
+    return branches_of(robot, starts, follow, manner.limits)
+
+
+def _attainable(robot: Robot, goal: Goal, manner: Manner) -> bool:
+    """Whether a goal has a solution at all, as far as that is known without the way to it."""
+    if goal.T is None or goal.task != "pose":
+        return True
+    return bool(nearest_to(robot, np.zeros(robot.n), goal.T, manner.follows or line_task(robot), False).solutions)
+
+
+def _along(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> Path:
+    """The tool along lines or an arc from joint values start (n,)."""
     timing = manner.timing
-    if timing is None or timing.duration is None or len(goals) == 1:
-        return _followed(robot, start, goals, steps, [manner] * len(goals))
+    paths = _followed(robot, start, goals, steps, manner, _durations(robot, start, goals, steps, manner))
+    whole = _of_all(joined(paths, timing.rate if timing is not None else None), len(goals), _reached(paths))
+    return whole if timing is None or timing.duration is None else replace(whole, duration=timing.duration)
+
+
+def _reached(paths: Sequence[Path]) -> int:
+    """How many goals paths went to, the last one perhaps not to its end."""
+    return sum(not path.reorientation for path in paths)
+
+
+def _of_all(path: Path, goals: int, reached: int) -> Path:
+    """A path to those of its goals that it reached, as a part of the way to all: what is not is as long as a piece."""
+    if reached == goals:
+        return path
+    share = reached / goals
+    events = tuple(replace(event, fraction=event.fraction * share) for event in path.events)
+    return replace(path, s=path.s * share, fraction=path.fraction * share, events=events)
+
+
+def _durations(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> list[float] | None:
+    """How long each piece takes [s], where a duration of the whole is to be shared."""
+    timing = manner.timing
+    if timing is None or timing.duration is None:
+        return None
     # The pieces as fast as they may be say how they share the duration.
     free = replace(manner, timing=replace(timing, duration=None, rate=None))
-    fastest = [path.duration or 1.0 for path in _followed(robot, start, goals, steps, [free] * len(goals))]
-    longer = timing.duration / (sum(fastest) * len(goals) / len(fastest))
+    fastest = _followed(robot, start, goals, steps, free)
+    times = [path.duration or 1.0 for path in fastest]
+    if len(times) == len(goals) == 1:
+        return [timing.duration]
+    whole = len(times) + len(goals) - _reached(fastest)
+    longer = timing.duration / (sum(times) * whole / len(times))
     bounded = bool(np.isfinite([timing.limits.velocity, timing.limits.acceleration]).any())
     if bounded and longer < 1.0 - 1e-9:
         least = timing.duration / longer
         found = f"found a duration of {timing.duration:g} s"
         raise InputError(f"{found}, expected at least {least:.6g} s within the limits")
     longer = max(longer, 1.0) if bounded else longer
-    manners = [replace(manner, timing=replace(timing, duration=longer * time)) for time in fastest]
-    return _followed(robot, start, goals, steps, manners)
+    return [longer * time for time in times]
 
 
-def _followed(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manners: Sequence[Manner]) -> list[Path]:
-    """The tool to each goal in its manner, as far as it gets."""
+def _followed(
+    robot: Robot,
+    start: Array,
+    goals: Sequence[Goal],
+    steps: int,
+    manner: Manner,
+    durations: Sequence[float] | None = None,
+) -> list[Path]:
+    """The tool to each goal, as far as it gets; before a piece perhaps a turn of joints with the tool at rest."""
     paths: list[Path] = []
-    for goal, manner in zip(goals, manners, strict=False):
-        timing = manner.timing
-        if timing is not None:
-            since = sum(path.duration or 1.0 for path in paths)
-            manner = replace(manner, timing=replace(timing, since=since))
-        paths.append(path := _by_tool(robot, paths[-1].q[-1] if paths else start, goal, steps, manner))
+    q = start
+    for goal in goals:
+        first = _begins(robot, q, goal, manner)
+        if first is not q:
+            turn = reorientation(robot, q, first, _in_turn(manner, paths, durations).timing, steps)
+            # That the arm is singular there is said of the piece that begins there.
+            paths.append(replace(turn, kind=manner.way, events=()))
+        path = _by_tool(robot, first, goal, steps, _in_turn(manner, paths, durations))
+        paths.append(path)
+        q = path.q[-1]
         if not path.complete:
             break
     return paths
 
 
-def _by_joints(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> Path:
+def _begins(robot: Robot, q: Array, goal: Goal, manner: Manner) -> Array:
+    """From which configuration (n,) with the pose of q (n,) a piece begins: q itself, but at some singular poses."""
+    follows = manner.follows or line_task(robot)
+    if not is_singular(robot, q, "position" if follows == "position" else None):
+        return q
+    first = _by_tool(robot, q, goal, TRIED, replace(manner, timing=None)).q[0]
+    return first if np.any(first != q) else q
+
+
+def _in_turn(manner: Manner, paths: Sequence[Path], durations: Sequence[float] | None) -> Manner:
+    """The manner of the piece after paths."""
+    timing = manner.timing
+    if timing is None:
+        return manner
+    own = None if durations is None else durations[len(paths)]
+    return replace(manner, timing=replace(timing, duration=own, since=sum(path.duration or 1.0 for path in paths)))
+
+
+def _by_joints(robot: Robot, start: Array | Goal, goals: Sequence[Goal], steps: int, manner: Manner) -> Path:
     """All joints together, from point to point."""
-    points = [start]
-    for goal in goals:
-        if goal.q is not None:
-            points.append(goal.q)
-            continue
-        found = _nearest(robot, points[-1], *_asked(robot, points[-1], goal, manner), manner.limits)
-        if not found.solutions:
-            return no_path(robot, start, found.reason or "not reached", steps)
-        points.append(found.solutions[0].q)
+    stages = [Goal(q=start) if isinstance(start, np.ndarray) else start, *goals]
+    points = points_through(robot, stages, manner)
+    if isinstance(points, str):
+        if isinstance(start, np.ndarray):
+            return no_path(robot, start, points, steps)
+        raise InputError(f"a pose of the path is {points}, expected poses that the arm can take")
     timing = manner.timing
     if timing is None and len(points) == 2:
         return interpolate_joints(robot, points[0], points[1], steps, manner.limits)
@@ -135,42 +235,13 @@ def _by_joints(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, ma
 
 def _by_tool(robot: Robot, start: Array, goal: Goal, steps: int, manner: Manner) -> Path:
     """The tool along a line or an arc."""
-    first = forward_kinematics(robot, start)
-    follows = manner.follows
-    if goal.q is not None:
-        T = forward_kinematics(robot, goal.q)
-    else:
-        T, task = _asked(robot, start, goal, manner)
-        if goal.task == "position" and line_task(robot) == "position":
-            follows = follows or "position"
-        if task == "approach":
-            # The roll about the tool's axis is free: that of the solution nearest to the start.
-            found = _nearest(robot, start, T, "approach", manner.limits)
-            if not found.solutions:
-                path = no_path(robot, start, found.reason or "not reached", steps)
-                return replace(path, kind=manner.way)
-            T = forward_kinematics(robot, found.solutions[0].q)
-    curve: ToolCurve = Line(first, T) if manner.via is None else CircularArc(first, manner.via, T)
+    asked = tool_curve(robot, start, goal, manner)
+    if isinstance(asked, str):
+        return replace(no_path(robot, start, asked, steps), kind=manner.way)
+    curve, follows = asked
     if manner.timing is None:
         t = row_times(1.0, steps, None)
-        path = follow_curve(robot, start, curve, t, time_law(t), manner.limits, follows)
+        path = follow_curve(robot, start, curve, t, time_law(t), manner.limits, follows, manner.halvings)
     else:
         path = timed_curve(robot, start, curve, manner.timing, steps, manner.limits, follows)
     return replace(path, kind=manner.way)
-
-
-def _asked(robot: Robot, start: Array, goal: Goal, manner: Manner) -> tuple[Array, str]:
-    """The pose (4, 4) that a goal comes to from joint values start (n,), and its task."""
-    assert goal.T is not None
-    if goal.task == "position" and line_task(robot) == "pose":
-        T = goal.T.copy()
-        T[:3, :3] = forward_kinematics(robot, start)[:3, :3]
-        return T, manner.follows or line_task(robot)
-    return goal.T, "approach" if goal.task == "approach" else manner.follows or line_task(robot)
-
-
-def _nearest(robot: Robot, start: Array, T: Array, task: str, limits: bool) -> Result:
-    """The answer with the solution nearest to the start alone."""
-    result = solve_ik(robot, T, limits=limits, near=start, task=task, most=1)  # type: ignore[arg-type]
-    assert isinstance(result, Result)
-    return result

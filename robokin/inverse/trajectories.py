@@ -24,13 +24,14 @@ from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_finite, expect_flag, expect_number, expect_numbers, expect_whole
 from robokin.inverse.follow import MOST
-from robokin.inverse.joint_paths import Event, Path, PathTask, follow_curve, line_task, singularities
+from robokin.inverse.followed_curves import follow_curve
+from robokin.inverse.joint_paths import Event, Path, PathTask, interpolate_joints, line_task, singularities
+from robokin.inverse.joint_rates import curve_rates, spare_motions
 from robokin.inverse.time_profiles import BLEND, MotionLimits, Passing, Profile, timed_move
 from robokin.inverse.timed_curves import TimedCurve
 from robokin.inverse.tool_curves import ToolCurve
 from robokin.kinematics.forward import forward_kinematics
-from robokin.kinematics.jacobian import jacobian
-from robokin.kinematics.velocity import differential_kinematics
+from robokin.kinematics.velocity import dexterity
 from robokin.model import CoupledRobot, Robot, expect_robot
 
 PROFILES = ("cubic", "quintic", "trapezoidal")
@@ -39,14 +40,8 @@ PASSINGS = ("stop", "spline", "blend")
 LONGEST = 1e9
 """The longest duration [s]: thirty years."""
 
-CLOSES = 1e-6
-"""How far J q' may be off the twist, relatively: beyond that the configuration is singular."""
-
 LOOKED_AT = 100
 """Steps of a line at least at which limits of velocity and acceleration are held."""
-
-DIFFERENCE = 1e-5
-"""The step along a line, as a part of it, between whose sides q'' is the difference of q'."""
 
 
 def trajectory(
@@ -132,14 +127,32 @@ def timed_curve(
     if timing.rate is None and looked_at == steps:
         return path
     assert path.duration is not None
-    tau = row_times(path.duration, steps, timing.rate) / path.duration
-    if timing.rate is not None and timing.since:
-        whole = row_times(timing.since + path.duration, steps, timing.rate) - timing.since
-        tau = np.append(0.0, whole[whole > path.duration * 1e-9] / path.duration)
+    tau = rows_since(timing, path.duration, steps) / path.duration
     tau[-1] = 1.0
     again = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
     free = motion_limits(robot, None, None)
     return timed_line(again, curve, timing.profile, free, path.duration, chosen)
+
+
+def reorientation(robot: Robot, first: Array, last: Array, timing: Timing | None, steps: int) -> Path:
+    """Joints from first (n,) to last (n,) [rad | m] in proportion, as the first move of a line, in its timing."""
+    if timing is None:
+        path = interpolate_joints(robot, first, last, steps, False)
+        return replace(path, reorientation=len(path) - 1)
+    profile = timing.profile
+    curve = timed_move(np.array([first, last]), profile, timing.limits, timing.duration)
+    t = rows_since(timing, curve.duration, steps)
+    path = _with_rows(robot, t, curve.duration, curve.at(t), 1.0, None, len(t) - 1)
+    path.q[-1] = last
+    return replace(path, reorientation=len(path) - 1)
+
+
+def rows_since(timing: Timing, duration: float, steps: int) -> Array:
+    """Times (m,) [s] of a piece's rows from its start to its end, those of a rate counted from the path's start."""
+    if timing.rate is None or not timing.since:
+        return row_times(duration, steps, timing.rate)
+    whole = row_times(timing.since + duration, steps, timing.rate) - timing.since
+    return np.append(0.0, whole[whole > duration * 1e-9])
 
 
 def joined(paths: Sequence[Path], rate: float | None = None) -> Path:
@@ -175,6 +188,7 @@ def joined(paths: Sequence[Path], rate: float | None = None) -> Path:
         fraction=(len(paths) - 1 + last.fraction) / len(paths),
         events=tuple(events),
         manipulability=rows(path.manipulability for path in paths),
+        reorientation=sum(path.reorientation for path in paths[:1]),
         steps=sum(path.steps for path in paths) - sum(end is not None for end in ends),
         duration=start if timed else None,
         velocity=rows(path.velocity for path in paths) if timed else None,
@@ -195,7 +209,7 @@ def timed_line(
     Raises InputError for a duration that is too short for them, and where a singular configuration lets none be enough.
     """
     tau = path.t
-    q1, q2 = _derivatives(path, curve, task)
+    q1, q2 = curve_rates(path, curve, task)
     _, s1, s2 = unit_law(profile, tau)
     with np.errstate(invalid="ignore", over="ignore"):
         speed = q1 * s1[:, None]
@@ -206,7 +220,7 @@ def timed_line(
     if unbounded.any():
         singular = f"where the path is singular, at {path.s[int(np.argmax(unbounded))]:.6g} of it"
         raise InputError(f"a joint's velocity has no bound {singular}, expected a path beside that")
-    if len(tau) > 2 and (spare := _spare(path, task)) is not None:
+    if len(tau) > 2 and (spare := spare_motions(path, task)) is not None:
         # A joint is to spare: what it does from row to row the line does not say, and is read off the rows.
         speed = speed + np.einsum("mij,mj->mi", spare, np.gradient(path.q, tau, axis=0, edge_order=2))
         push = np.gradient(speed, tau, axis=0, edge_order=2)
@@ -287,45 +301,12 @@ def _with_rows(
 ) -> Path:  # fmt: skip
     """The path of rows q, velocities and accelerations (m, n) at times t (m,)."""
     q, velocity, acceleration = rows
-    found = differential_kinematics(robot, q)
+    least, manipulability = dexterity(robot, q)
     part = t / duration
-    events = singularities(robot, part, q, found.singular_values, None)
+    events = singularities(robot, part, q, least, None)
     events += [event] if event is not None else []
     T = forward_kinematics(robot, q)
     return Path(
-        t, part, q, T, fraction, tuple(events), found.manipulability, steps, robot, "joint", duration, velocity,
+        t, part, q, T, fraction, tuple(events), manipulability, steps, robot, "joint", duration, velocity,
         acceleration,
     )  # fmt: skip
-
-
-def _derivatives(path: Path, curve: ToolCurve, task: PathTask) -> tuple[Array, Array]:
-    """q' and q'' (m, n) by the part of the way, at each row; inf where the configuration is singular."""
-    robot, s, q = path.robot, path.s, path.q
-    first = _joint_rates(robot, q, curve.twist(s), task)
-    step = DIFFERENCE / np.maximum(1.0, np.max(np.abs(first), axis=1, keepdims=True))
-    step[~np.isfinite(step)] = DIFFERENCE
-    with np.errstate(invalid="ignore"):
-        moves = np.where(np.isfinite(first), step * first, 0.0)
-        ahead = _joint_rates(robot, q + moves, curve.twist(s + step[:, 0]), task)
-        behind = _joint_rates(robot, q - moves, curve.twist(s - step[:, 0]), task)
-        return first, (ahead - behind) / (2.0 * step)
-
-
-def _spare(path: Path, task: PathTask) -> Array | None:
-    """The projections (m, n, n) onto motions that leave the tool where it is; None where there is no such motion."""
-    J = jacobian(path.robot, path.q)[:, : 3 if task == "position" else 6]
-    rank = np.linalg.matrix_rank(J, tol=1e-6 * float(np.max(np.abs(J))))
-    if not (rank < path.robot.n).any():
-        return None
-    return np.asarray(np.eye(path.robot.n) - np.linalg.pinv(J, rcond=1e-10) @ J)
-
-
-def _joint_rates(robot: Robot, q: Array, twist: Array, task: PathTask) -> Array:
-    """The rates (m, n) of least motion with J rate = twist (m, 6) at q (m, n); inf where there are none."""
-    J = jacobian(robot, q)
-    if task == "position":
-        J, twist = J[:, :3], twist[:, :3]
-    rates: Array = np.einsum("mij,mj->mi", np.linalg.pinv(J, rcond=1e-10), twist)
-    off = np.max(np.abs(np.einsum("mij,mj->mi", J, rates) - twist), axis=1)
-    rates[off > CLOSES * np.maximum(1e-12, np.max(np.abs(twist), axis=1))] = np.inf
-    return rates

@@ -166,6 +166,34 @@ def differential_kinematics(
     return Differential(kind, J, rank, values, raw, manipulability, condition, null, robot, q, frame)
 
 
+def dexterity(robot: Robot, q: Array, task: TaskName | None = None) -> tuple[Array, Array]:
+    """The least singular value and the manipulability, (m,) each, at q (m, n): those of `differential_kinematics`.
+
+    The former is infinite of an arm that cannot move its tool. Of square Jacobians the latter is |det J|.
+    """
+    kind = motion_task(robot, task)
+    J = jacobian(robot, q)
+    if not np.isfinite(J).all():
+        raise InputError("q: the pose is too far away for a number, expected less")
+    M, rows = kind.dimension, kind.rows
+    if not M:
+        return np.full(len(q), np.inf), np.zeros(len(q))
+    values = np.linalg.svd(scaled(robot, J, kind.size)[:, rows], compute_uv=False)[:, :M]
+    raw = J[:, rows]
+    if raw.shape[1] == raw.shape[2] == M:
+        volume = np.abs(np.linalg.det(raw))
+    else:
+        volume = np.prod(np.linalg.svd(raw, compute_uv=False)[:, :M], axis=1)
+    regular = values[:, -1] > RANK * np.maximum(values[:, 0], RANK)
+    return np.asarray(values[:, -1]), np.where(regular, volume, 0.0)
+
+
+def is_singular(robot: Robot, q: Array, task: TaskName | None = None) -> bool:
+    """Whether the rank at joint values q (n,) is less than at others."""
+    found = differential_kinematics(robot, q, task=task)
+    return bool(found.rank < found.task.dimension)
+
+
 def null_space_joints(found: Differential) -> list[tuple[int, ...]]:
     """For each configuration the joints, from 1, that can move together while the tool stands still to first order."""
     n = found.null_space.shape[-1]

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from robokin.arrays import Array
+from robokin.inverse.follow import ITSELF
 from robokin.inverse.joint_paths import Event, Path, line_task
+from robokin.inverse.path_branches import PathBranch, posture
 from robokin.kinematics.velocity import differential_kinematics
 from robokin.model import Robot
 from robokin.model.joint_units import in_units, joint_factors
@@ -82,8 +84,42 @@ class PathRecords:
             "length": path.length / self.units.metres,
             "greatest_moves": self.moves().tolist(),
             "least_manipulability": self.least(),
+            **self.postures(),
+            **({"reorientation": self.reorientation()} if path.reorientation else {}),
+            **({"branches": [self.branch(one) for one in path.branches]} if path.branches else {}),
             "events": [self.event(event) for event in events],
             "path": list(self.records()),
+        }
+
+    def postures(self) -> dict[str, str]:
+        """The names of the postures at which the tool's line begins and ends, of an arm that has them."""
+        path = self.path
+        if path.kind == "joint":
+            return {}
+        ends = [posture(self.robot, path.q[i]) for i in (path.reorientation, -1)]
+        # On a singular configuration a sign is a toss: the row beside it tells.
+        if len(path) - path.reorientation > 2:
+            ends = [posture(self.robot, path.q[i]) for i in (path.reorientation + 1, -2)]
+        return {"branch": ends[0], "branch_at_end": ends[1]} if all(ends) else {}
+
+    def reorientation(self) -> dict[str, Any]:
+        """The JSON of the first move, in which joints turn while the tool stands still."""
+        q, factors = self.path.q, joint_factors(self.robot, self.units)
+        last = self.path.reorientation
+        moved = np.flatnonzero(np.abs(q[last] - q[0]) > ITSELF) + 1
+        return {"steps": last, "joints": moved.tolist(), "end": in_units(q[last], factors).tolist()}
+
+    def branch(self, one: PathBranch) -> dict[str, Any]:
+        """The JSON of a branch that was tried."""
+        factors = joint_factors(self.robot, self.units)
+        return {
+            "branch": one.name,
+            "start": in_units(one.start, factors).tolist(),
+            "complete": one.complete,
+            "fraction": one.fraction,
+            "travel": in_units(one.travel, factors).tolist(),
+            "ends_by": None if one.event is None else one.event.words,
+            "chosen": one.chosen,
         }
 
     def event(self, event: Event) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import counted
+from robokin.kinematics.structure import arm_size
 from robokin.number_text import show
 from robokin.records.envelope import envelope
 from robokin.records.path_records import PathRecords
@@ -49,6 +50,11 @@ class PathReport:
     def notes(self) -> Iterator[str]:
         """Sentences on what happens on the way, and on where the path ends."""
         robot, path, units = self.records.robot, self.records.path, self.records.units
+        if path.reorientation:
+            turn = self.records.reorientation()
+            joints = " and ".join(str(joint) for joint in turn["joints"])
+            steps = counted(path.reorientation, "step")
+            yield f"joints {joints} turn first, in {steps} with the tool at rest, to where the path goes on from"
         for event in path.events:
             record = self.records.event(event)
             value = ""
@@ -65,6 +71,32 @@ class PathReport:
             if np.max(np.abs(gap)) > SAME:
                 end = "  ".join(show(value) for value in self.records.joints()[-1])
                 yield f"the line ends at that pose with another configuration: {end}"
+
+        postures = self.records.postures()
+        if postures and postures["branch"] != postures["branch_at_end"]:
+            yield f"the posture changes from {postures['branch']} to {postures['branch_at_end']} on the way"
+        yield from self.branch_notes()
+
+    def branch_notes(self) -> Iterator[str]:
+        """Sentences on the branches that were tried."""
+        robot, branches, units = self.records.robot, self.records.path.branches, self.records.units
+        if not branches:
+            return
+        reach, best = sum(one.complete for one in branches), branches[0]
+        tried = f"of {len(branches)} branches from this pose" if len(branches) > 1 else "of 1 branch from this pose"
+        start = ",".join(show(value) for value in self.records.branch(best)["start"])
+        name = f" ({best.name})" if best.name else ""
+        if not reach:
+            gets = "" if best.chosen else f"; the one from {start}{name} gets farthest, to {show(best.fraction)}"
+            yield f"{tried} none reaches the end{gets}"
+        elif best.chosen:
+            joint = int(np.argmax(best.travel / np.where(robot.revolute, 1.0, arm_size(robot))))
+            travel = show(self.records.branch(best)["travel"][joint])
+            unit = units.angle if robot.revolute[joint] else units.length
+            most = f"joint {joint + 1} by {travel} {unit}"
+            yield f"{tried} {reach} can reach the end; taken is that with the least travel{name}: {most}"
+        else:
+            yield f"{tried} {reach} can reach the end: start from {start}{name}"
 
     def page(self) -> Iterator[bytes]:
         """A summary, and some rows."""

@@ -74,6 +74,8 @@ COMMANDS = [
     ["path", "puma560", "--from", "home", "--to", "80,10,90,0,10,0", "--steps", "4"],
     ["path", "planar2r", "--from", "10,20", "--xy", "1,0.5", "--line", "--steps", "3"],
     ["path", "planar2r", "--from", "10,20", "--xy", "9,9", "--line", "--steps", "3"],
+    ["path", "puma560", "--from", "home", "--xyz", "-300,700,200", "--line", "--steps", "3"],
+    ["path", "puma560", "--from", "Trans(500,300,200)", "--to", "Trans(400,300,200)", "--line", "--steps", "3"],
     ["plot", "puma560"], ["plot", "planar3r", "--q", "30,40,50", "--q", "60,20,10", "--frames"],
     ["plot", "scara", "--ik", "400,200,300"], ["plot", "planar2r", "--ik", "9,9"], ["plot", "bennett"],
     ["plot", "human-hand", "--q", "pinch", "--q", "open", "--frames"],

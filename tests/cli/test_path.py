@@ -249,3 +249,22 @@ def test_a_picture_of_no_kind_is_refused_before_the_work(call, tmp_path, monkeyp
     monkeypatch.chdir(tmp_path)
     refused(call(*FROM, "--to", END, "--plot", "a.mp4"), "--plot: found 'a.mp4'", ".png, .svg, .pdf, .html or .gif")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_pose_to_start_from_takes_the_best_branch(call):
+    words = ["path", "puma560", "--from", "Trans(500,300,200) RPY(0,60,0)", "--to", "Trans(-300,500,200) RPY(0,60,60)"]
+    document = call(*words, "--line", "--steps", "6", "--json").json
+    assert document["complete"] and document["branches"][0]["chosen"]
+    assert document["branches"][0]["start"] == pytest.approx(document["path"][0]["q"])
+    assert document["branch"] == document["branches"][0]["branch"] == document["branch_at_end"]
+    page = call(*words, "--line", "--steps", "6")
+    assert "8 branches from this pose" in " ".join(page.text.split()) and max(map(len, page.lines)) <= 80
+    # Formulas in joint values are no transform.
+    assert call("path", "planar2r", "--from", "10*sqrt(4),10", "--to", "40,20", "-f", "csv").status == 0
+
+
+def test_a_first_turn_is_told(call):
+    answer = call("path", "puma560", "--from", "home", "--xyz", "-300,700,200", "--line", "--steps", "4", "--json")
+    turn = answer.json["reorientation"]
+    assert (turn["steps"], turn["joints"]) == (4, [4, 6])
+    assert turn["end"] == pytest.approx(answer.json["path"][4]["q"])

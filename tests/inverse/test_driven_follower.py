@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import robokin
-from robokin.inverse.joint_paths import follow_line
+from robokin.inverse.paths_to_poses import follow_line
 from robokin.kernel.chain import row_standing
 from robokin.model.coupled_robot import driven
 from robokin.model.graph import Coupling

@@ -11,8 +11,9 @@ import pytest
 
 import robokin
 from robokin.errors import InputError
-from robokin.inverse.joint_paths import follow_curve
-from robokin.inverse.paths_to_poses import Goal, Manner, path_through
+from robokin.inverse.followed_curves import follow_curve
+from robokin.inverse.path_goals import Goal, Manner
+from robokin.inverse.paths_to_poses import path_through
 from robokin.inverse.time_profiles import MotionLimits, timed_move
 from robokin.inverse.timed_curves import TimedCurve
 from robokin.inverse.tool_curves import CircularArc

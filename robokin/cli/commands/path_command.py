@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -16,12 +17,15 @@ from robokin.errors import InputError
 
 if TYPE_CHECKING:
     from robokin.arrays import Array
-    from robokin.inverse.paths_to_poses import Goal
+    from robokin.inverse.path_goals import Goal
     from robokin.model import Robot
     from robokin.units import Units
 
 
 TASKS = ("pose", "position")
+
+TRANSFORM = re.compile(r"[A-Z]\w*\s*\(")
+"""What transforms have, and joint values with formulas, such as sqrt(2), have not."""
 
 STEPS = 100
 """Steps when nobody says how many."""
@@ -72,6 +76,9 @@ def command(
     t is in seconds, and velocities and accelerations of the joints are written too. All joints begin and end each piece
     together; at each point between they stop, unless --spline or --blend says how to pass.
 
+    From a pose (--from with a transform) the best branch over the whole path is taken: that of which the joint that
+    travels farthest travels least. Where a path breaks, it is said which other start gets to the end.
+
     --xyz alone keeps the orientation of the start. A straight line turns about one fixed axis. It ends where a joint
     leaves its limits, where there is no solution, or where a joint would have to jump; the rows up to there are
     written, how far it goes is said, and the status is 3.
@@ -83,15 +90,15 @@ def command(
         robokin path puma560 --from 90,-30,60,0,40,0 --xyz -300,700,200 --line -f csv
         robokin path planar3r --from 10,40,20 --xy 0.9,1.2 --phi 90 --line -f csv
         robokin path scara --from 0,60,100,0 --to 40,30,50,90 --json
+        robokin path ur5e --from "Trans(500,300,200)" --to "Trans(0,500,300)" --line
         robokin path planar2r --from 0,10 --to 40,20 --to 20,80 --duration 3 --spline
         robokin path planar2r --from 30,40 --xy -0.9,0.1 --line --duration 2 -f csv
         robokin path puma560 --from home --xyz -300,700,200 --line --plot line.html
     """
-    from robokin.cli.configurations import typed_configurations
     from robokin.cli.targets import parse_place
     from robokin.inverse.follow import MOST
-    from robokin.inverse.paths_to_poses import Manner, path_through
-    from robokin.model.joint_units import joint_factors
+    from robokin.inverse.path_goals import Manner
+    from robokin.inverse.paths_to_poses import path_through
     from robokin.pictures.picture_files import MOVING, picture_ending
     from robokin.records.path_records import PathRecords
     from robokin.reports.path_report import PathReport
@@ -112,15 +119,15 @@ def command(
     if from_ is None:
         example = ",".join(["0"] * model.n)
         raise InputError(f"--from is missing, expected {model.n} values or a named pose, such as --from {example}")
-    start = typed_configurations([from_], model, units, "--from")[0] * joint_factors(model, units)
+    begin = _goal(from_, model, units, "--from")
     target.exclude("--to", to or None)
     if not to and not target.given:
         raise InputError("there is no end, expected --to, --pose, --matrix, --xyz or --xy")
-    goals = [_goal(text, model, units) for text in to or []] or [_target(target.texts, model, units)]
-    _expect_near(model, [start, *(goal.q for goal in goals if goal.q is not None)])
+    goals = [_goal(text, model, units, "--to") for text in to or []] or [_target(target.texts, model, units)]
+    _expect_near(model, [goal.q for goal in (begin, *goals) if goal.q is not None])
     via = None if arc is None else parse_place(arc, "--arc", model, units)
     manner = Manner(way, via, not no_limits, chosen, timing.read(model, units, way))
-    path = path_through(model, start, goals, count, manner)
+    path = path_through(model, begin if begin.q is None else begin.q, goals, count, manner)
     answer = PathReport(PathRecords(path, units), goals[-1].q if way != "joint" else None)
     if kind not in ("table", "json"):
         for sentence in answer.notes():
@@ -138,19 +145,19 @@ def command(
     return DONE if path.complete else NO
 
 
-def _goal(text: str, robot: Robot, units: Units) -> Goal:
-    """What a --to says: joint values, a named pose, or a transform."""
+def _goal(text: str, robot: Robot, units: Units, name: str) -> Goal:
+    """What a --from or --to says: joint values, a named pose, or a transform."""
     from robokin.cli.configurations import typed_configurations
     from robokin.cli.targets import parse_target
-    from robokin.inverse.paths_to_poses import Goal
+    from robokin.inverse.path_goals import Goal
     from robokin.model.joint_units import joint_factors
 
-    if "(" not in text:
-        return Goal(typed_configurations([text], robot, units, "--to")[0] * joint_factors(robot, units))
+    if not TRANSFORM.search(text):
+        return Goal(typed_configurations([text], robot, units, name)[0] * joint_factors(robot, units))
     try:
         found = parse_target({"--pose": text}, robot, units)
     except InputError as error:
-        raise InputError(str(error).replace("--pose", "--to", 1)) from None
+        raise InputError(str(error).replace("--pose", name, 1)) from None
     for note in found.notes:
         say(note)
     return Goal(T=found.T, task=found.task)
@@ -159,7 +166,7 @@ def _goal(text: str, robot: Robot, units: Units) -> Goal:
 def _target(texts: dict[str, str | None], robot: Robot, units: Units) -> Goal:
     """The goal that the options of a target say."""
     from robokin.cli.targets import parse_target
-    from robokin.inverse.paths_to_poses import Goal
+    from robokin.inverse.path_goals import Goal
 
     target = parse_target(texts, robot, units)
     for note in target.notes:

@@ -1,0 +1,153 @@
+"""Where paths go, and which configurations they take there.
+
+Statement. Give the curve of the tool to a goal; or, for joints that move together, the configurations at all goals.
+Derivation. Of the solutions at each pose of a path those are taken with which the farthest moves of a joint, added up
+from point to point, are least (dynamic programming): the nearest one at each point may lead to where the next one is
+far. Full turns of joints within the limits are other solutions.
+Degenerate case. Of infinitely many solutions at a pose the nearest to the last configuration is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from robokin.arrays import Array
+from robokin.inverse.analysis import analysis_of
+from robokin.inverse.follow import HALVINGS
+from robokin.inverse.followed_curves import joint_scale
+from robokin.inverse.full_turns import equivalents, turns_of_limits
+from robokin.inverse.joint_paths import PathTask, line_task
+from robokin.inverse.solutions import Result
+from robokin.inverse.solve import solve_ik
+from robokin.inverse.tool_curves import CircularArc, Line, ToolCurve
+from robokin.kinematics.forward import forward_kinematics
+from robokin.model import CoupledRobot, Robot
+from robokin.spatial.angles import circled
+
+if TYPE_CHECKING:
+    from robokin.inverse.trajectories import Timing
+
+Way = Literal["joint", "line", "arc"]
+
+OTHERS = 1e-6
+"""Weight of all joints' moves beside the farthest one's, which tells equals apart."""
+
+MOST_TURNED = 1000
+"""Solutions with full turns at a pose that are compared at most; else each is turned near to the last."""
+
+
+@dataclass(frozen=True, eq=False)
+class Goal:
+    """Where a path goes: joint values q (n,), or a pose T (4, 4) [m] with its task, as `solve_ik` has it."""
+
+    q: Array | None = None
+    T: Array | None = None
+    task: str = "pose"
+
+
+@dataclass(frozen=True, eq=False)
+class Manner:
+    """How a path gets there.
+
+    way: all joints together, or the tool along straight lines or an arc, which goes by the place `via` (3,) [m];
+    limits: whether it ends where a joint leaves them; follows: what follows a line, the whole pose or the position;
+    timing: None for a path without a duration, whose t is from 0 to 1; halvings: as `follow_curve` has it.
+    """
+
+    way: Way = "joint"
+    via: Array | None = None
+    limits: bool = True
+    follows: PathTask | None = None
+    timing: Timing | None = None
+    halvings: int = HALVINGS
+
+
+def tool_curve(robot: Robot, start: Array, goal: Goal, manner: Manner) -> tuple[ToolCurve, PathTask | None] | str:
+    """The curve from joint values start (n,) to a goal, and what follows it; or why the goal is not reached."""
+    first = forward_kinematics(robot, start)
+    follows = manner.follows
+    if goal.q is not None:
+        T = forward_kinematics(robot, goal.q)
+    else:
+        T, task = _asked(robot, start, goal, manner)
+        if goal.task == "position" and line_task(robot) == "position":
+            follows = follows or "position"
+        if task == "approach":
+            # The roll about the tool's axis is free: that of the solution nearest to the start.
+            found = nearest_to(robot, start, T, "approach", manner.limits)
+            if not found.solutions:
+                return found.reason or "not reached"
+            T = forward_kinematics(robot, found.solutions[0].q)
+    return (Line(first, T) if manner.via is None else CircularArc(first, manner.via, T)), follows
+
+
+def points_through(robot: Robot, stages: Sequence[Goal], manner: Manner) -> list[Array] | str:
+    """Joint values (n,) at all stages of a path by joints, or why one of them is not reached."""
+    scale = joint_scale(robot)
+    # For each stage the configurations, the least sum of moves to each, and from which of the stage before.
+    rows: list[Array] = []
+    sums: list[Array] = []
+    came: list[Array] = []
+    for k, stage in enumerate(stages):
+        guess = rows[-1][int(np.argmin(sums[-1]))] if k else robot.poses.get("home", np.zeros(robot.n))
+        found = stage.q[None] if stage.q is not None else _solutions(robot, guess, stage, manner, k == 0)
+        if isinstance(found, str):
+            return found
+        if not k:
+            rows, sums, came = [found], [np.zeros(len(found))], [np.zeros(len(found), dtype=np.intp)]
+            continue
+        moves = np.abs(found[None] - rows[-1][:, None]) / scale
+        total = sums[-1][:, None] + np.max(moves, axis=2) + OTHERS * np.sum(moves, axis=2)
+        best = np.argmin(total, axis=0)
+        rows.append(found)
+        sums.append(total[best, np.arange(len(found))])
+        came.append(best)
+    place = int(np.argmin(sums[-1]))
+    points = []
+    for k in range(len(stages) - 1, -1, -1):
+        points.append(rows[k][place])
+        place = int(came[k][place])
+    return points[::-1]
+
+
+def _solutions(robot: Robot, last: Array, stage: Goal, manner: Manner, first: bool) -> Array | str:
+    """The configurations (k, n) for a stage of a path by joints, from about joint values last (n,); or why none."""
+    T, task = _asked(robot, last, stage, manner)
+    analysis = analysis_of(robot, task)  # type: ignore[arg-type]
+    near = nearest_to(robot, last, T, task, manner.limits)
+    if not near.solutions:
+        return near.reason or "not reached"
+    whole = solve_ik(robot, T, limits=manner.limits, task=task) if not analysis.redundancy else near  # type: ignore[arg-type]
+    assert isinstance(whole, Result)
+    if analysis.redundancy or analysis.idle or analysis.solver is None or whole.families:
+        return near.solutions[0].q[None]
+    q = np.array([one.q for one in whole.solutions])
+    if isinstance(robot, CoupledRobot):
+        return np.concatenate([near.solutions[0].q[None], q])
+    turned = last + circled(q - last, robot.revolute)
+    if manner.limits:
+        if turns_of_limits(robot) * len(q) <= MOST_TURNED:
+            return equivalents(robot, q)[0]
+        turned = turned[robot.within_limits(turned)]
+    return np.concatenate([near.solutions[0].q[None], turned, q] if not first else [near.solutions[0].q[None], q])
+
+
+def _asked(robot: Robot, start: Array, goal: Goal, manner: Manner) -> tuple[Array, str]:
+    """The pose (4, 4) that a goal comes to from joint values start (n,), and its task."""
+    assert goal.T is not None
+    if goal.task == "position" and line_task(robot) == "pose":
+        T = goal.T.copy()
+        T[:3, :3] = forward_kinematics(robot, start)[:3, :3]
+        return T, manner.follows or line_task(robot)
+    return goal.T, "approach" if goal.task == "approach" else manner.follows or line_task(robot)
+
+
+def nearest_to(robot: Robot, start: Array, T: Array, task: str, limits: bool) -> Result:
+    """The answer with the solution nearest to the start alone."""
+    result = solve_ik(robot, T, limits=limits, near=start, task=task, most=1)  # type: ignore[arg-type]
+    assert isinstance(result, Result)
+    return result
