@@ -21,9 +21,15 @@ class Brief:
 
     def __repr__(self) -> str:
         """The class with its fields."""
-        parts = [f"{part.name}={_shown(getattr(self, part.name))}" for part in fields(self)]  # type: ignore[arg-type]
+        parts = [f"{part.name}={shown_value(getattr(self, part.name))}" for part in fields(self)]  # type: ignore[arg-type]
         text = f"{type(self).__name__}({', '.join(parts)})"
         return text if len(text) <= MOST_CHARACTERS else f"{text[: MOST_CHARACTERS - 4]} …)"
+
+    def _repr_html_(self) -> str:
+        """A table for a notebook: the command's, or a row for each field."""
+        import robokin  # the package's own face: tables are made in a room above this one
+
+        return robokin.notebook.html_of(self)
 
 
 class Answer(Brief):
@@ -34,15 +40,9 @@ class Answer(Brief):
 
         Raises InputTypeError where `units` are none.
         """
-        import robokin  # the package's own face: documents are made in a room above this one
+        import robokin  # the package's own face, as above
 
         return robokin.documents.document_of(self, units)
-
-    def _repr_html_(self) -> str:
-        """A table for a notebook."""
-        import robokin
-
-        return robokin.notebook.html_of(self)
 
 
 class Described(Answer):
@@ -54,7 +54,8 @@ class Described(Answer):
         return type(self), tuple(dict(value) if isinstance(value, MappingProxyType) else value for value in values)
 
 
-def _shown(value: Any) -> str:
+def shown_value(value: Any) -> str:
+    """A value in a few words: of a long array or list only the size."""
     shape = getattr(value, "shape", None)
     if isinstance(shape, tuple):
         if len(shape) == 1 and shape[0] <= MOST_NUMBERS:
@@ -63,13 +64,13 @@ def _shown(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, str):
-        return repr(value)
+        return repr(str(value))
     if callable(value):
         return "…"
     if isinstance(value, tuple | list | dict) or hasattr(value, "keys"):
         short = isinstance(value, tuple | list) and all(isinstance(one, int | float | str | bool) for one in value)
         if short and len(value) <= MOST_NUMBERS:
-            return f"({', '.join(_shown(one) for one in value)})"
+            return f"({', '.join(map(shown_value, value))}{',' * (len(value) == 1)})"
         return f"({len(value)} items)" if len(value) else "()"
     if is_dataclass(value) and type(value).__repr__ is Brief.__repr__:
         return f"{type(value).__name__}(…)"

@@ -42,6 +42,7 @@ def document_of(value: Answer, units: Units | None = None) -> Any:
     from robokin.inverse.joint_paths import Path
     from robokin.inverse.solutions import BatchResult, Result
     from robokin.inverse.tip_targets import TipAnswer
+    from robokin.kinematics.singular import Singularities
     from robokin.kinematics.velocity import Differential
     from robokin.mobility.manoeuvrability import Manoeuvrability
     from robokin.mobility.verdict import Mobility
@@ -61,6 +62,8 @@ def document_of(value: Answer, units: Units | None = None) -> Any:
         return TipSolutionRecords(value, own or value.question.tree.units).document()
     if isinstance(value, Differential):
         return _differential(value, own)
+    if isinstance(value, Singularities):
+        return singular(value.robot, value.asked, own)
     if isinstance(value, Path):
         from robokin.records.path_records import PathRecords
 

@@ -1,9 +1,9 @@
-"""Answers as HTML for notebooks: tables of plain text, in which nothing is markup but the table itself."""
+"""Answers as HTML for notebooks: the shell's tables, in which nothing is markup but the table itself."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from html import escape
 from typing import Any
 
@@ -11,48 +11,74 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
-from robokin.brief import Answer
+from robokin.brief import Answer, Brief, shown_value
 from robokin.documents import document_of
 from robokin.errors import InputError, counted
 from robokin.expected import expect_numbers
-from robokin.model import Mechanism, Robot, WheeledBase
+from robokin.model import Mechanism, Robot, Tree, WheeledBase
 from robokin.number_text import show
-
-MOST_ROWS = 50
-"""Rows of a table: more are counted below it."""
-
-RIGHT = ' style="text-align: right"'
+from robokin.reports.html_pages import MOST_ROWS, SIDES, html_page, html_table
+from robokin.reports.page_parts import Heading, Part, Table
 
 
-def html_of(value: Answer) -> str:
-    """An answer, a robot, a mechanism or a wheeled base as HTML."""
+def html_of(value: Answer | Brief) -> str:
+    """An answer, a robot, a mechanism, a wheeled base or a part of an answer as HTML."""
     from robokin.inverse.joint_paths import Path
     from robokin.inverse.solutions import BatchResult, Result
     from robokin.inverse.tip_targets import TipAnswer
+    from robokin.kinematics.singular import Singularities
     from robokin.kinematics.velocity import Differential
 
-    if isinstance(value, Robot):
-        return _robot(document_of(value))
-    if isinstance(value, Mechanism):
-        return _mechanism(document_of(value))
-    if isinstance(value, WheeledBase):
-        return _base(document_of(value))
     if isinstance(value, Result) and value.question is not None:
         return _solutions(document_of(value))
     if isinstance(value, BatchResult):
-        rows = [[str(i), str(count), *_least(value, i)] for i, count in enumerate(value.count[:MOST_ROWS].tolist())]
-        return _captioned(repr(value)) + _table(["target", "solutions", "position error [m]"], rows, len(value))
+        return _targets(value)
     if isinstance(value, TipAnswer):
         return _groups(document_of(value))
     if isinstance(value, Path):
         return _path(document_of(value))
-    if isinstance(value, Differential) and value.q.ndim == 1:
-        document = document_of(value)
-        names = [f"q{i}" for i in range(1, value.robot.n + 1)]
-        head = [f"rank {document['rank']} of {document['full_rank']}, manipulability {document['manipulability']:.6g}"]
-        labels = ("vx", "vy", "vz", "wx", "wy", "wz")
-        return _captioned(*head) + _table(["", *names], _labelled(labels, document["jacobian"]))
-    return _captioned(repr(value))
+    if isinstance(value, Differential):
+        return _jacobian(document_of(value)) if value.q.ndim == 1 else _ranks(value)
+    if isinstance(value, Singularities):
+        from robokin.reports.singularity_pages import singularity_parts
+
+        return html_page(*singularity_parts(value.robot, value.robot.units, value.of, value))
+    return html_page(*_parts(value))
+
+
+def _parts(value: Answer | Brief) -> Sequence[Part]:
+    """What the shell's page of a value consists of; of a part of an answer its fields, a row each."""
+    from robokin.grading.mark_items import Report
+    from robokin.mobility.manoeuvrability import Manoeuvrability
+    from robokin.mobility.verdict import Mobility
+    from robokin.workspace.workspace_result import Workspace
+
+    if isinstance(value, Robot | Tree | Mechanism | WheeledBase):
+        from robokin.reports.description_tables import description_parts
+
+        return description_parts(document_of(value))
+    if isinstance(value, Mobility):
+        from robokin.reports.mobility_tables import mobility_parts
+
+        return mobility_parts(document_of(value))
+    if isinstance(value, Manoeuvrability):
+        from robokin.reports.mobility_tables import wheeled_parts
+
+        return wheeled_parts(document_of(value))
+    if isinstance(value, Workspace):
+        from robokin.reports.workspace_tables import workspace_parts
+
+        return workspace_parts(value, value.space.robot.units)
+    if isinstance(value, Report):
+        from robokin.reports.mark_report import report_parts
+
+        return report_parts(value)
+    if isinstance(value, Answer) or type(value).__repr__ is not Brief.__repr__:
+        return [Heading(repr(value), "")]
+    rows = ((part.name, getattr(value, part.name)) for part in fields(value))  # type: ignore[arg-type]
+    drawn = _table(["", ""], ([name, str(one) if isinstance(one, str) else shown_value(one)] for name, one in rows))
+    drawn.headed = False
+    return [Heading(type(value).__name__, ""), drawn]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +88,9 @@ class MatrixView:
     rows: tuple[tuple[float, ...], ...]
 
     def _repr_html_(self) -> str:
+        right = SIDES["right"]
         cells = "".join(
-            "<tr>" + "".join(f"<td{RIGHT}>{escape(show(value))}</td>" for value in row) + "</tr>" for row in self.rows
+            "<tr>" + "".join(f"<td{right}>{escape(show(value))}</td>" for value in row) + "</tr>" for row in self.rows
         )
         bars = "border-left: 2px solid; border-right: 2px solid"
         return f'<table style="{bars}"><tbody>{cells}</tbody></table>'
@@ -89,31 +116,14 @@ def matrix(values: ArrayLike) -> MatrixView:
 # Tables -------------------------------------------------------------------------------------------------------
 
 
-def _table(names: Sequence[str], rows: Iterable[Sequence[str]], whole: int | None = None) -> str:
-    """A table of texts; `whole` is how many rows there are, if not all are given."""
-    shown = [*rows]
-    head = "".join(f"<th>{escape(name)}</th>" for name in names)
-    body = "".join("<tr>" + "".join(f"<td{RIGHT}>{escape(cell)}</td>" for cell in row) + "</tr>" for row in shown)
-    more = (len(shown) if whole is None else whole) - len(shown)
-    foot = f"<p>and {counted(more, 'row')} more</p>" if more > 0 else ""
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{foot}"
-
-
-def _captioned(title: str, *more: str) -> str:
-    rest = "".join(f"<br>{escape(one)}" for one in more)
-    return f"<p><b>{escape(title)}</b>{rest}</p>"
-
-
-def _numbers(values: Iterable[float] | None) -> str:
-    return "" if values is None else " ".join(map(show, values))
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return show(value) if isinstance(value, int | float) else str(value)
+def _table(names: Sequence[str], rows: Iterable[Sequence[str]], words: Sequence[str] = ()) -> Table:
+    """A table of texts, of numbers in all columns but the first and those that are `words`."""
+    drawn = Table()
+    for i, name in enumerate(names):
+        drawn.add_column(name, justify="left" if not i or name in words else "right")
+    for row in rows:
+        drawn.add_row(*row)
+    return drawn
 
 
 def _labelled(labels: Iterable[str], rows: Iterable[Sequence[float]]) -> list[list[str]]:
@@ -124,94 +134,77 @@ def _said(units: dict[str, str]) -> str:
     return f"lengths in {units['length']}, angles in {units['angle']}"
 
 
-def _robot(document: dict[str, Any]) -> str:
-    """The table, as `robokin show` has it; in a DH table the variable stands with its offset."""
-    frames = document["convention"] == "frames"
-    columns = ["origin", "axis"] if frames else ["theta", "d", "a", "alpha"]
-    if document["convention"] == "modified":
-        columns = ["alpha", "a", "theta", "d"]
-    rows = []
-    for row in document["rows"]:
-        cells = []
-        for name in columns:
-            if name == "origin":
-                cells.append(_numbers(line[3] for line in row["origin"][:3]))
-            elif name == "axis":
-                cells.append(_numbers(row["axis"]))
-            elif row[name] is None:
-                offset = row["offset"] or 0.0
-                sign = "+" if offset > 0.0 else "-"
-                cells.append(str(row["variable"]) + (f" {sign} {show(abs(offset))}" if offset else ""))
-            else:
-                cells.append(show(row[name]))
-        rows.append([str(row["i"]), row["name"], row["type"], *cells, _numbers(row["limits"])])
-    title = f"{document['convention']} convention, {_said(document['units'])}"
-    return _captioned(document["name"], document["class"], title) + _table(
-        ["i", "joint", "type", *("place" if name == "origin" else name for name in columns), "limits"], rows
-    )
-
-
-def _mechanism(document: dict[str, Any]) -> str:
-    rows = [
-        [joint["name"], joint["type"], ", ".join(joint["links"]), str(joint["freedoms"]), _numbers(joint["at"])]
-        for joint in document["joints"]
-    ]
-    count = f"{document['space']}, {counted(len(document['links']), 'link')}, Grübler's count {document['grubler']}"
-    return _captioned(document["name"], count, _said(document["units"])) + _table(
-        ["joint", "type", "links", "f", "at"], rows
-    )
-
-
-def _base(document: dict[str, Any]) -> str:
-    names = ("name", "type", "angle", "radius", "offset", "roller", "driven", "turned")
-    rows = [[_cell(wheel[name]) for name in names] + [_numbers(wheel["at"])] for wheel in document["wheels"]]
-    return _captioned(document["name"], _said(document["units"])) + _table([*names, "at"], rows)
+def _joints(count: int) -> list[str]:
+    return [f"q{i}" for i in range(1, count + 1)]
 
 
 def _solutions(document: dict[str, Any]) -> str:
     count = counted(len(document["solutions"]), "solution")
-    if not document["reachable"]:
-        return _captioned(f"no solution: {document['reason']}", document["method"])
     basis = document["certificate"] if document["complete"] else "perhaps not all"
-    names = [f"q{i}" for i in range(1, len(document["solutions"][0]["q"]) + 1)]
+    head = Heading(f"{count}, {document['method']}", f"{basis}; {_said(document['units'])}")
+    listed = [(str(i), one) for i, one in enumerate(document["solutions"], start=1)]
+    if not document["reachable"]:
+        head = Heading(f"no solution: {document['reason']}", f"{document['method']}; {_said(document['units'])}")
+        listed = [("nearest", document["nearest"])] if document.get("nearest") else []
+    if not listed:
+        return html_page(head)
     rows = [
-        [str(i), *map(show, one["q"]), one["branch"], _cell(one["within_limits"])]
-        for i, one in enumerate(document["solutions"][:MOST_ROWS], start=1)
+        [label, *map(show, one["q"]), one["branch"], "yes" if one["within_limits"] else "no"] for label, one in listed
     ]
-    said = _said(document["units"])
-    return _captioned(f"{count}, {document['method']}", basis, said) + _table(
-        ["", *names, "branch", "within limits"], rows, len(document["solutions"])
-    )
+    names = ["", *_joints(len(listed[0][1]["q"])), "branch", "within limits"]
+    return html_page(head, _table(names, rows, ("branch", "within limits")))
+
+
+def _targets(batch: Any) -> str:
+    """The number of solutions of each target of a batch, and the least error among them."""
+    rows = []
+    for i, count in enumerate(batch.count[:MOST_ROWS].tolist()):
+        errors = batch.position_error[i][:count]
+        rows.append([str(i), str(count), f"{errors.min():.1g}" if len(errors) else ""])
+    drawn = _table(["target", "solutions", "position error [m]"], rows)
+    return html_page(Heading(repr(batch), "")) + html_table(drawn, len(batch))
 
 
 def _groups(document: dict[str, Any]) -> str:
     """The solutions of each group of tips, in its own joints."""
-    parts = []
+    parts: list[Part] = []
     for group in document["groups"]:
         solutions = group["solutions"]
         found = counted(len(solutions), "solution") if solutions else f"no solution: {group['reason']}"
         basis = group["certificate"] if group["complete"] or not solutions else "perhaps not all"
         rows = [
             [str(i), *(show(one["q"][joint - 1]) for joint in group["joints"]), one["branch"]]
-            for i, one in enumerate(solutions[:MOST_ROWS], start=1)
+            for i, one in enumerate(solutions, start=1)
         ]
         names = ["", *(f"q{joint}" for joint in group["joints"]), "branch"]
-        parts.append(_captioned(f"{', '.join(group['tips'])}: {found}, {group['method']}", basis))
-        parts += [_table(names, rows, len(solutions))] if rows else []
-    return "".join(parts) + f"<p>{escape(_said(document['units']))}</p>"
+        parts.append(Heading(f"{', '.join(group['tips'])}: {found}, {group['method']}", basis))
+        parts += [_table(names, rows, ("branch",))] if rows else []
+    return html_page(*parts, _said(document["units"]))
 
 
 def _path(document: dict[str, Any]) -> str:
     words = [event["words"] for event in document["events"]]
     picked = np.unique(np.linspace(0, len(document["path"]) - 1, 11).round().astype(int)).tolist()
-    names = [f"q{i}" for i in range(1, len(document["path"][0]["q"]) + 1)]
     rows = [_labelled([f"{row['t']:.4g}"], [row["q"]])[0] for row in (document["path"][i] for i in picked)]
     how = "all of it" if document["complete"] else f"up to {document['fraction']:.4g} of it"
     title = f"path of {document['id']}, {counted(len(document['path']), 'row')}, {how}"
-    return _captioned(title, *words, _said(document["units"])) + _table(["t", *names], rows)
+    head = Heading(title, "; ".join([*words, _said(document["units"])]))
+    return html_page(head, _table(["t", *_joints(len(document["path"][0]["q"]))], rows))
 
 
-def _least(value: Any, i: int) -> list[str]:
-    """The least position error of a target's solutions."""
-    errors = value.position_error[i][: value.count[i]]
-    return [f"{errors.min():.1g}" if len(errors) else ""]
+def _jacobian(document: dict[str, Any]) -> str:
+    """The matrix of one configuration."""
+    units = document["jacobian_units"]
+    title = f"rank {document['rank']} of {document['full_rank']}, manipulability {document['manipulability']:.6g}"
+    rest = f"in the axes of the {document['frame']}, lengths in {units['length']}, angles in {units['angle']}"
+    rows = _labelled(("vx", "vy", "vz", "wx", "wy", "wz"), document["jacobian"])
+    return html_page(Heading(title, rest), _table(["", *_joints(len(document["q"]))], rows))
+
+
+def _ranks(found: Any) -> str:
+    """Rank, manipulability and condition of each configuration of a block."""
+    ranks, volumes = found.rank.reshape(-1)[:MOST_ROWS].tolist(), found.manipulability.reshape(-1).tolist()
+    conditions = found.condition.reshape(-1).tolist()
+    rows = [[str(i), str(rank), f"{volumes[i]:.6g}", f"{conditions[i]:.6g}"] for i, rank in enumerate(ranks)]
+    drawn = _table(["configuration", "rank", "manipulability", "condition"], rows)
+    return html_page(Heading(repr(found), "metres and radians")) + html_table(drawn, len(volumes))

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, SupportsIndex, overload
 
+from robokin.brief import Brief
+from robokin.errors import counted
 from robokin.grading.feedback import ANSWER, DISTANCE, PART, Words, tells
 from robokin.grading.pose_difference import PASS
 from robokin.units import Units
@@ -27,8 +30,8 @@ def said_status(status: str, level: str) -> str:
     return status if tells(level, PART) or status in SAYS_NOTHING else WRONG
 
 
-@dataclass(frozen=True)
-class Item:
+@dataclass(frozen=True, repr=False)
+class Item(Brief):
     """The mark of one answer: its status, its score from 0 to 1, what was expected, what was given, and the error.
 
     `words` says what is wrong, as far as the feedback may tell; `line` is where the answer stands in a file, or None;
@@ -76,15 +79,40 @@ class Item:
         }
 
 
-@dataclass(frozen=True)
-class Report:
-    """All items of a check of answers about a robot. `tolerance` says what was allowed, in the units."""
+@dataclass(frozen=True, repr=False)
+class Report(Brief):
+    """All items of a check of answers about a robot, a sequence. `tolerance` says what was allowed, in the units."""
 
     check: str
     robot: str
     units: Units | None
     tolerance: dict[str, float]
     items: tuple[Item, ...]
+
+    def __len__(self) -> int:
+        """The number of items."""
+        return len(self.items)
+
+    @overload
+    def __getitem__(self, i: SupportsIndex) -> Item: ...
+    @overload
+    def __getitem__(self, i: slice) -> tuple[Item, ...]: ...
+    def __getitem__(self, i: SupportsIndex | slice) -> Item | tuple[Item, ...]:
+        """Item i, or a tuple of some. Raises IndexError."""
+        return self.items[i]
+
+    def __iter__(self) -> Iterator[Item]:
+        """The items in their order."""
+        return iter(self.items)
+
+    def __bool__(self) -> bool:
+        """A report is one whether or not there are items in it."""
+        return True
+
+    def __repr__(self) -> str:
+        """A line: how many answers are right, and the score."""
+        right = f"{self.passed} of {counted(len(self.counted), 'answer')} right"
+        return f"<check {self.check} of {self.robot}: {right}, score {self.score:.4g}>"
 
     @cached_property
     def counted(self) -> tuple[Item, ...]:

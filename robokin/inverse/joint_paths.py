@@ -6,8 +6,9 @@ et al., Robotics: Modelling, Planning and Control, 2009, section 4.2).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal, SupportsIndex, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -85,6 +86,14 @@ class Path(Answer):
     def __len__(self) -> int:
         """The number of rows."""
         return len(self.t)
+
+    def __getitem__(self, i: SupportsIndex | slice) -> Array:
+        """The joint values (n,) [rad | m] of row i, or (k, n) of some. Raises IndexError."""
+        return np.asarray(self.q[i])
+
+    def __iter__(self) -> Iterator[Array]:
+        """The joint values (n,) [rad | m] row by row."""
+        return iter(self.q)
 
     def __repr__(self) -> str:
         """A line: what moves, how far, and how much of it can be followed."""

@@ -18,7 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.brief import Brief
+from robokin.brief import Answer, Brief
+from robokin.errors import counted, shown
 from robokin.kernel.facts import fact
 from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.singular_equation import Equation, equation_of, exact_angle, lateral, reference_point
@@ -55,14 +56,35 @@ class Singularity(Brief):
     lost: tuple[Lost, ...]
 
 
-def singular_configurations(robot: Robot, task: TaskName | None = None) -> tuple[Singularity, ...]:
+class Singularities(tuple[Singularity, ...], Answer):
+    """The conditions that `singular_configurations` found of a robot: a tuple of them.
+
+    `asked` is the task that was asked for, or None, `of` the one that was answered.
+    """
+
+    robot: Robot
+    asked: TaskName | None
+    of: TaskName
+
+    def __repr__(self) -> str:
+        """A line: the conditions by name."""
+        name = self.robot.id or self.robot.name
+        if not self:
+            return f"<no singular configuration of {name} was found>"
+        return f"<{counted(len(self), 'singular condition')} of {name}: {shown(', '.join(one.name for one in self))}>"
+
+
+def singular_configurations(robot: Robot, task: TaskName | None = None) -> Singularities:
     """The conditions on the joints under which an arm loses a freedom that it has in general.
 
     Found by number (`singular_search`), so that a condition on a few joints that lies hidden among the others may be
     missed; what is listed is tested at random values of the joints that it leaves free. `task` is what counts of the
     tool's twist, as in `differential_kinematics`. Raises InputError for a robot without joints.
     """
-    return _found(robot, motion_task(robot, task))
+    kind = motion_task(robot, task)
+    found = Singularities(_found(robot, kind))
+    found.robot, found.asked, found.of = robot, task, kind.name
+    return found
 
 
 @fact

@@ -12,16 +12,17 @@ while the point at which m is taken stands still.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal, get_args
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+from typing import Literal, SupportsIndex, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array, Index
 from robokin.brief import Answer, Brief
-from robokin.errors import InputError
-from robokin.expected import expect_choice, expect_finite
+from robokin.errors import InputError, InputTypeError
+from robokin.expected import described, expect_choice, expect_finite
 from robokin.kernel.facts import fact
 from robokin.kernel.joint_axes import nearest_point
 from robokin.kernel.ranks import RANK
@@ -76,6 +77,44 @@ class Differential(Answer):
     robot: Robot
     q: Array
     frame: Literal["base", "tool"] = "base"
+
+    def __len__(self) -> int:
+        """The number of configurations of a block. Raises InputTypeError for a single one."""
+        if self.q.ndim < 2:
+            raise InputTypeError("found the answer at one configuration, which has no length, expected q: (m, n)")
+        return len(self.q)
+
+    def __bool__(self) -> bool:
+        """An answer is one whatever its length."""
+        return True
+
+    def __getitem__(self, i: SupportsIndex | slice) -> Differential:
+        """The answer at configuration i, or at some. Raises IndexError."""
+        if not isinstance(i, slice) and not hasattr(i, "__index__"):
+            raise InputTypeError(f"index: found {described(i)}, expected the number of a configuration, from 0")
+        if self.q.ndim < 2:
+            raise InputTypeError("found the answer at one configuration, which has no parts, expected q: (m, n)")
+        parts = {
+            part.name: getattr(self, part.name)[i]
+            for part in fields(self)
+            if part.name not in ("task", "robot", "frame")
+        }
+        return replace(self, **parts)
+
+    def __iter__(self) -> Iterator[Differential]:
+        """The answers in the order of the configurations."""
+        return (self[i] for i in range(len(self)))
+
+    def __repr__(self) -> str:
+        """A line: the rank, and how near to less of it."""
+        name, full = self.robot.id or self.robot.name, self.task.dimension
+        if self.q.ndim < 2:
+            volume, condition = float(self.manipulability), float(self.condition)
+            said = f"manipulability {volume:.6g}, condition {condition:.6g}"
+            return f"<Jacobian of {name}: rank {int(self.rank)} of {full}, {said}>"
+        low, high = (int(self.rank.min()), int(self.rank.max())) if self.rank.size else (0, 0)
+        rank = f"{high}" if low == high else f"{low} to {high}"
+        return f"<{self.rank.size} Jacobians of {name}: rank {rank} of {full}>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -48,6 +48,13 @@ class RobotMethods:
 
         return robokin.draw(self, q, kind=kind, **options)  # type: ignore[arg-type]
 
+    @property
+    def table(self) -> Any:
+        """The table as `robokin show` prints it: `len`, an index gives a row; a notebook shows it, `print` too."""
+        from importlib import import_module
+
+        return import_module("robokin.table_view").TableView(self)
+
     def to_yaml(self) -> str:
         """The description of the robot as YAML, which `robokin.load` reads again."""
         from importlib import import_module

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from robokin.number_text import show, show_range
+from robokin.reports.page_parts import Heading, Part, Table
 from robokin.reports.page_tables import heading, pairs, render, table
 from robokin.spatial import rpy_from_rotation
 from robokin.units import RADIANS
@@ -17,13 +18,16 @@ MOST_POSES = 40
 
 def description_table(record: dict[str, Any]) -> bytes:
     """The page about what a description describes, from its document."""
-    return {"robot": robot_table, "tree": tree_table, "mechanism": mechanism_table, "wheeled": wheel_table}[
-        record["kind"]
-    ](record)
+    return render(*description_parts(record))
 
 
-def robot_table(record: dict[str, Any]) -> bytes:
-    """A robot's table as a lecture prints it, and what else is known of it."""
+def description_parts(record: dict[str, Any]) -> list[Part]:
+    """The same as the parts of a page."""
+    return {"robot": _robot, "tree": _tree, "mechanism": _mechanism, "wheeled": _wheels}[record["kind"]](record)
+
+
+def row_table(record: dict[str, Any]) -> Table:
+    """The rows of a robot's table as a lecture prints them."""
     drawn = table()
     frames = record["convention"] == "frames"
     modified = record["convention"] == "modified"
@@ -42,7 +46,19 @@ def robot_table(record: dict[str, Any]) -> bytes:
             cells = [variable_cell(row, name, angle) for name in order]
         limits = "" if row["limits"] is None else show_range(*row["limits"])
         drawn.add_row(str(row["i"]), *([row["name"]] if named else []), row["type"], *cells, limits)
+    return drawn
+
+
+def row_heading(record: dict[str, Any]) -> Heading:
+    """What stands above the rows: the robot, the convention, the units."""
     units = record["units"]
+    rest = f"{record['convention']} convention, lengths in {units['length']}, angles in {units['angle']}"
+    return heading(record["name"], rest)
+
+
+def _robot(record: dict[str, Any]) -> list[Part]:
+    """A robot's table, and what else is known of it."""
+    units, angle = record["units"], record["units"]["angle"]
     entries = [("class", record["class"])]
     if record["wrist"]:
         entries.append(("wrist", record["wrist"]))
@@ -74,8 +90,7 @@ def robot_table(record: dict[str, Any]) -> bytes:
     entries.append(("at zero", _zero_text(record["at_zero"], units["length"])))
     entries += [("about", record["description"])] if record["description"] else []
     entries += [("source", record["source"])] if record["source"] else []
-    rest = f"{record['convention']} convention, lengths in {units['length']}, angles in {units['angle']}"
-    return render(heading(record["name"], rest), "", drawn, "", pairs(entries))
+    return [row_heading(record), "", row_table(record), "", pairs(entries)]
 
 
 def _coupled_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
@@ -100,7 +115,7 @@ def coupling_in_short(coupling: dict[str, Any]) -> str:
     return f"{coupling['joint']} {'adds' if coupling['own'] else 'follows'} {others}{shift}"
 
 
-def tree_table(record: dict[str, Any]) -> bytes:
+def _tree(record: dict[str, Any]) -> list[Part]:
     """A tree's joints with the links that they join, and its tips."""
     drawn = table()
     for name in ("", "joint", "type", "on", "limits", "follows"):
@@ -120,7 +135,7 @@ def tree_table(record: dict[str, Any]) -> bytes:
     entries += [("about", record["description"])] if record["description"] else []
     entries += [("source", record["source"])] if record["source"] else []
     rest = f"tree of links, lengths in {units['length']}, angles in {units['angle']}"
-    return render(heading(record["name"], rest), "", drawn, "", pairs(entries))
+    return [heading(record["name"], rest), "", drawn, "", pairs(entries)]
 
 
 def _zero_text(zero: dict[str, Any], unit: str) -> str:
@@ -165,7 +180,7 @@ def transform_in_short(matrix: list[list[float]], angle: str) -> str:
     return " ".join(parts)
 
 
-def mechanism_table(record: dict[str, Any]) -> bytes:
+def _mechanism(record: dict[str, Any]) -> list[Part]:
     """A mechanism's joints below one another."""
     drawn = table()
     for name in ("joint", "type", "links", "f", "at", "axis"):
@@ -183,10 +198,10 @@ def mechanism_table(record: dict[str, Any]) -> bytes:
     ]
     entries += [("about", record["description"])] if record["description"] else []
     entries += [("source", record["source"])] if record["source"] else []
-    return render(heading(record["name"], f"lengths in {record['units']['length']}"), "", drawn, "", pairs(entries))
+    return [heading(record["name"], f"lengths in {record['units']['length']}"), "", drawn, "", pairs(entries)]
 
 
-def wheel_table(record: dict[str, Any]) -> bytes:
+def _wheels(record: dict[str, Any]) -> list[Part]:
     """The wheels below one another, and what else the description says."""
     drawn = table()
     numbers = ("x", "y", "angle", "radius", *(key for key in ("offset", "roller") if _some(record, key)))
@@ -205,7 +220,7 @@ def wheel_table(record: dict[str, Any]) -> bytes:
     entries += [("about", record["description"])] if record["description"] else []
     entries += [("source", record["source"])] if record["source"] else []
     rest = f"a wheeled base, lengths in {units['length']}, angles in {units['angle']}"
-    return render(heading(record["name"], rest), "", drawn, "", pairs(entries))
+    return [heading(record["name"], rest), "", drawn, "", pairs(entries)]
 
 
 def _some(record: dict[str, Any], key: str) -> bool:

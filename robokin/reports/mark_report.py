@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import textwrap
-from typing import Any
 
 from robokin.grading.feedback import ANSWER, DISTANCE, tells
 from robokin.grading.mark_items import Item, Report
@@ -19,6 +18,7 @@ from robokin.records.mark_records import (
     report_rows,
     summary,
 )
+from robokin.reports.page_parts import Part
 from robokin.tables.written_rows import csv_records, encode, json_document, json_line
 
 
@@ -40,11 +40,18 @@ def written(report: Report, kind: str, level: str = ANSWER) -> bytes:
 
 def _page(report: Report, level: str) -> bytes:
     """The marks for eyes, as a level of feedback tells them."""
-    from robokin.reports.page_tables import heading, render, table
+    from robokin.reports.page_tables import render
+
+    return render(*report_parts(report, level))
+
+
+def report_parts(report: Report, level: str = ANSWER) -> list[Part]:
+    """The same as the parts of a page."""
+    from robokin.reports.page_tables import heading, table
 
     units = report.units
     said = f"lengths in {units.length}, angles in {units.angle}" if units is not None else ""
-    parts: list[Any] = [heading(f"check {report.check}: {report.robot}", said)]
+    parts: list[Part] = [heading(f"check {report.check}: {report.robot}", said)]
     if report.tolerance:
         parts.append(f"tolerance: {_tolerance(report)}")
     parts.append("")
@@ -72,7 +79,7 @@ def _page(report: Report, level: str) -> bytes:
             sums.add_row(name, str(own.passed), str(len(own.counted)), f"{own.score:.2f}")
         parts += ["", sums]
     parts += ["", f"{summary(report)}, score {report.score:.2f}"]
-    return render(*parts)
+    return parts
 
 
 def _error(item: Item, name: str) -> str:

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from robokin.errors import counted
+from robokin.reports.page_parts import Part
 from robokin.reports.page_tables import heading, pairs, render, table
 
 MODE_COLUMNS = 3
@@ -30,8 +31,13 @@ BRANCHES = 6
 
 def mobility_table(record: dict[str, Any]) -> bytes:
     """The answer about a mechanism, a robot, or bare numbers."""
+    return render(*mobility_parts(record))
+
+
+def mobility_parts(record: dict[str, Any]) -> list[Part]:
+    """The same as the parts of a page."""
     space = f"{record['space']}, λ = {record['lambda']}"
-    parts: list[Any] = [heading(record["name"] or "Grübler's count", space), "", _joints(record), ""]
+    parts: list[Part] = [heading(record["name"] or "Grübler's count", space), "", _joints(record), ""]
     parts += [pairs(_count(record))]
     if record["kind"] == "mechanism":
         parts += ["", _side_by_side(record), "", pairs(_mechanism_entries(record))]
@@ -45,7 +51,7 @@ def mobility_table(record: dict[str, Any]) -> bytes:
         parts += ["", pairs(_tree_entries(record))]
     elif record["note"]:
         parts += ["", pairs([("note", record["note"])])]
-    return render(*parts)
+    return parts
 
 
 def _tree_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
@@ -249,6 +255,11 @@ def _robot_entries(record: dict[str, Any]) -> list[tuple[str, str]]:
 
 def wheeled_table(record: dict[str, Any]) -> bytes:
     """The answer about a wheeled base."""
+    return render(*wheeled_parts(record))
+
+
+def wheeled_parts(record: dict[str, Any]) -> list[Part]:
+    """The same as the parts of a page."""
     mobility, steering = record["mobility"], record["steerability"]
     kinds: dict[str, int] = {}
     for wheel in record["wheels"]:
@@ -274,7 +285,7 @@ def wheeled_table(record: dict[str, Any]) -> bytes:
     if record["as_expected"] is not None:
         stated = ", ".join(f"{name} {value}" for name, value in record["expected"].items())
         entries.append(("the file", f"{'agrees' if record['as_expected'] else 'differs'}: it states {stated}"))
-    return render(heading(record["name"], "a wheeled base in the plane"), "", drawn, "", pairs(entries))
+    return [heading(record["name"], "a wheeled base in the plane"), "", drawn, "", pairs(entries)]
 
 
 def _commanded(record: dict[str, Any]) -> str:

@@ -60,5 +60,8 @@ class Heading:
     rest: str
 
 
-Fitted = tuple[Table | Heading | str, int, list[int]]
+Part = Table | Heading | str
+"""A part of a page."""
+
+Fitted = tuple[Part, int, list[int]]
 """A part of a page; of a table also the blanks between its columns, and each column's width."""

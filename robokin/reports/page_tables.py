@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from robokin.errors import visible
 from robokin.number_text import show_column
-from robokin.reports.page_parts import GAPS, WIDTH, Column, Heading, Table
+from robokin.reports.page_parts import GAPS, WIDTH, Column, Heading, Part, Table
 from robokin.reports.plain_pages import plain_page, width_of
 from robokin.tables.written_rows import encode
 
@@ -61,10 +61,19 @@ def heading(text: str, rest: str = "") -> Heading:
     return Heading(visible(text), visible(rest))
 
 
-def render(*parts: Table | Heading | str) -> bytes:
+def render(*parts: Part) -> bytes:
     """The parts one below the other, as standard output takes them."""
     terminal = sys.stdout is not None and sys.stdout.isatty()
     page = max(shutil.get_terminal_size((WIDTH, 24)).columns if terminal else WIDTH, 1)
+    return encode(_text(parts, page, terminal))
+
+
+def plain_text(*parts: Part) -> str:
+    """The same as text of 80 columns without colour, and without the end of the last line."""
+    return _text(parts, WIDTH, False).rstrip("\n")
+
+
+def _text(parts: Sequence[Part], page: int, terminal: bool) -> str:
     fitted = [(part, *_fit(part, page)) if isinstance(part, Table) else (part, 0, []) for part in parts]
     text = None if terminal else plain_page(fitted)
     if text is None:
@@ -72,7 +81,7 @@ def render(*parts: Table | Heading | str) -> bytes:
 
         text = rich_page(fitted, page, terminal)
     # Rich pads cells up to the edge; there should be no blanks at the ends of lines.
-    return encode("\n".join(line if terminal else line.rstrip() for line in text.split("\n")))
+    return "\n".join(line if terminal else line.rstrip() for line in text.split("\n"))
 
 
 def _fit(drawn: Table, page: int) -> tuple[int, list[int]]:

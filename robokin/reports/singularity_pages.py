@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from robokin.kinematics.singular import Singularity
 from robokin.model import Robot
 from robokin.number_text import show
 from robokin.records.singularity_records import singularity_record, value_texts
+from robokin.reports.page_parts import Part
 from robokin.units import Units
 
 
 def singularity_page(robot: Robot, units: Units, task: str, found: Sequence[Singularity]) -> bytes:
     """All conditions for a task, a paragraph each."""
-    from robokin.reports.page_tables import heading, pairs, render
+    from robokin.reports.page_tables import render
+
+    return render(*singularity_parts(robot, units, task, found))
+
+
+def singularity_parts(robot: Robot, units: Units, task: str, found: Sequence[Singularity]) -> list[Part]:
+    """The same as the parts of a page."""
+    from robokin.reports.page_tables import heading, pairs
 
     what = "" if task == "pose" else f"of the {task}, "
-    parts: list[Any] = [heading(robot.name, f"{what}lengths in {units.length}, angles in {units.angle}")]
+    parts: list[Part] = [heading(robot.name, f"{what}lengths in {units.length}, angles in {units.angle}")]
     if not found:
         parts += ["", "no singular configuration was found"]
     for one in found:
@@ -41,4 +48,4 @@ def singularity_page(robot: Robot, units: Units, task: str, found: Sequence[Sing
         entries.append(("such as", f"{'  '.join(show(value) for value in record['example'])}{outside}"))
         entries += [("lost" if i == 0 else "", lost.words) for i, lost in enumerate(one.lost)]
         parts += ["", heading(one.name), pairs(entries)]
-    return render(*parts)
+    return parts

@@ -13,7 +13,7 @@ from robokin.errors import counted
 from robokin.number_text import show
 from robokin.pictures.workspace_cuts import Cut
 from robokin.records.workspace_records import GROUPS, WORDS, holds_at_a_point, known, ranges_of
-from robokin.reports.page_parts import WIDTH
+from robokin.reports.page_parts import WIDTH, Part
 from robokin.reports.page_tables import heading, pairs, render, table
 from robokin.units import Units
 from robokin.workspace.place import WorkspacePlace
@@ -42,14 +42,20 @@ KINDS = {0: "a point", 1: "a curve", 2: "a surface", 3: "a solid"}
 
 def workspace_table(found: Workspace, units: Units, cuts: Sequence[Cut] = (), plates: Sequence[str] = ()) -> bytes:
     """The page of a workspace: its figures, then its pictures in text."""
-    robot = found.space.robot
-    parts: list[Any] = [heading(robot.name, f"lengths in {units.length}, angles in {units.angle}"), ""]
-    parts.append(pairs(figures(found, units, cuts)))
-    for note in found.notes:
-        parts += ["", textwrap.fill(note, WIDTH)]
+    parts = workspace_parts(found, units, cuts)
     for plate in plates:
         parts += ["", plate.rstrip("\n")]
     return render(*parts)
+
+
+def workspace_parts(found: Workspace, units: Units, cuts: Sequence[Cut] = ()) -> list[Part]:
+    """The parts of the page but for the pictures."""
+    robot = found.space.robot
+    parts: list[Part] = [heading(robot.name, f"lengths in {units.length}, angles in {units.angle}"), ""]
+    parts.append(pairs(figures(found, units, cuts)))
+    for note in found.notes:
+        parts += ["", textwrap.fill(note, WIDTH)]
+    return parts
 
 
 def figures(found: Workspace, units: Units, cuts: Sequence[Cut] = ()) -> list[tuple[str, str]]:

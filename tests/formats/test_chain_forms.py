@@ -13,7 +13,7 @@ from robokin.formats import library_names, read_text
 from robokin.formats.library import load_any
 from robokin.model import Robot
 from robokin.records.description_records import robot_record
-from robokin.reports.description_tables import robot_table
+from robokin.reports.description_tables import description_table
 
 X, Y, Z = np.eye(3)
 AXES = {"x": X, "y": Y, "z": Z}
@@ -404,7 +404,7 @@ def test_the_texts_of_coordinates_are_what_they_say(text):
 
 def test_show_prints_the_variable_with_its_offset():
     robot = read_text(f"{DEGREES}ets: Rz(q1) tx(5) Rz(90 - q2) tx(5) Rz(q3 - 30)\n")
-    lines = robot_table(robot_record(robot, robot.units)).decode()
+    lines = description_table(robot_record(robot, robot.units)).decode()
     assert "for q1" not in lines
     assert "0 0 1  for 90 - q2" in lines
     assert "0 0 1  for q3 - 30" in lines
