@@ -115,7 +115,7 @@ site-check: build/site-check ## the built site in chromium: accessibility, both 
 # One resolution for all: what is pinned for developers is what users and releases get.
 COMPILE := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --upgrade --custom-compile-command 'make lock'
 lock: $(VENV)/release ## renew the locks in .ci/requirements/ with today's versions
-	$(BIN)/$(COMPILE) -o .ci/requirements/dev.txt pyproject.toml --extra plot --extra cluster --group dev
+	$(BIN)/$(COMPILE) -o .ci/requirements/dev.txt pyproject.toml --extra plot --extra cluster --extra pandas --group dev
 	$(BIN)/$(COMPILE) -o .ci/requirements/user.txt pyproject.toml --constraint .ci/requirements/dev.txt
 	$(BIN)/$(COMPILE) -o .ci/requirements/build.txt --group build --constraint .ci/requirements/dev.txt
 	$(BIN)/$(COMPILE) -o .ci/requirements/release.txt --group release --constraint .ci/requirements/dev.txt

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # `typing` has the same, and takes a while to load
 if TYPE_CHECKING:
+    from robokin import dataframes as dataframes
     from robokin import documents as documents
     from robokin import notebook as notebook
     from robokin.drawings import draw as draw
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from robokin.formats import load_tree as load_tree
     from robokin.formats import load_wheeled as load_wheeled
     from robokin.formats.library import library_names as library_names
+    from robokin.formats.pose_expressions import pose as pose
     from robokin.formats.pose_expressions import transform as transform
     from robokin.formats.robot_of_table import from_table as from_table
     from robokin.grading.marks import check_configuration as check_configuration
@@ -62,13 +64,15 @@ if TYPE_CHECKING:
     from robokin.spatial.conversions import rotation_from_rpy as rotation_from_rpy
     from robokin.spatial.conversions import rotvec_from_rotation as rotvec_from_rotation
     from robokin.spatial.conversions import rpy_from_rotation as rpy_from_rotation
+    from robokin.spatial.rigid_poses import invert_pose as invert_pose
+    from robokin.spatial.rigid_poses import pose_parts as pose_parts
     from robokin.symbol_matrices import symbols as symbols
     from robokin.units import Units as Units
     from robokin.workspace.analyse import analyse_workspace as analyse_workspace
 
 __version__ = "0.1.0"
 
-_MODULES = ("documents", "notebook")
+_MODULES = ("dataframes", "documents", "notebook")
 """Public modules, which are imported when they are first used, too."""
 
 # Names are imported when they are first used, so that the command line starts without numpy.
@@ -107,6 +111,9 @@ _HOMES = {
     "draw": "robokin.drawings",
     "symbols": "robokin.symbol_matrices",
     "transform": "robokin.formats.pose_expressions",
+    "pose": "robokin.formats.pose_expressions",
+    "pose_parts": "robokin.spatial.rigid_poses",
+    "invert_pose": "robokin.spatial.rigid_poses",
     "Tolerance": "robokin.grading.tolerance",
     "default_tolerance": "robokin.grading.tolerance",
     "check_pose": "robokin.grading.marks",

@@ -44,6 +44,15 @@ class Answer(Brief):
 
         return robokin.documents.document_of(self, units)
 
+    def to_pandas(self, units: Units | None = None) -> Any:
+        """The answer as a data frame with the columns of its CSV: see `robokin.dataframes.of`.
+
+        In metres and radians, or in the units, which the headings then say. Raises InputTypeError for what is no table.
+        """
+        import robokin
+
+        return robokin.dataframes.of(self, units)
+
 
 class Described(Answer):
     """What a description describes: copied and pickled by its fields, of which some are read-only views of mappings."""

@@ -329,24 +329,13 @@ def _solution_document(
 
 
 def _differential(found: Differential, units: Units | None) -> Any:
+    from robokin.kinematics.velocity import block_of
     from robokin.records.jacobian_records import JacobianRecords
 
     robot, q = found.robot, _configurations(found.q)
     own = units or robot.units
     maker = JacobianRecords(robot, own, found.frame, found.task.name)
     rows = q.reshape(-1, robot.n)
-    whole = found if q.ndim > 1 else _of_one(found)
+    whole = block_of(found)
     records = [*maker.records(_in_joint_units(robot, own, rows), whole)]
     return records[0] if q.ndim == 1 else records
-
-
-def _of_one(found: Differential) -> Differential:
-    """One configuration as a batch of one."""
-    from dataclasses import fields, replace
-
-    changed: dict[str, Any] = {
-        part.name: np.asarray(getattr(found, part.name))[None]
-        for part in fields(found)
-        if part.name not in ("task", "robot", "frame")
-    }
-    return replace(found, **changed)

@@ -16,6 +16,7 @@ from robokin.expected import described, expect_choice, expect_finite, expect_fla
 from robokin.inverse.joint_paths import Path
 from robokin.inverse.solutions import Result
 from robokin.model import Mechanism, Robot, Tree, expect_robot
+from robokin.model.named_values import plain_joint_values
 from robokin.units import Units
 
 if TYPE_CHECKING:
@@ -152,7 +153,7 @@ def scene_with(
 
 
 def _rows(robot: Robot | Tree, q: ArrayLike) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    values = expect_finite(q, "q", f"(n,) or (m, n) finite joint values, n = {robot.n}")
+    values = expect_finite(plain_joint_values(robot, q), "q", f"(n,) or (m, n) finite joint values, n = {robot.n}")
     if values.ndim not in (1, 2) or values.shape[-1] != robot.n or not values.size:
         raise InputError(f"q: found {described(values)}, expected (n,) or (m, n), n = {robot.n}")
     return values.reshape(-1, robot.n)

@@ -37,6 +37,39 @@ def described(value: Any) -> str:
     return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"
 
 
+def names_of(value: Any) -> list[Any]:
+    """The names of a data frame's columns, or of the cells of a row of one; [] for all else.
+
+    Frames of pandas and polars, tables of pyarrow, rows of pandas.
+    """
+    for holder in ("column_names", "columns", "index"):
+        names = getattr(value, holder, None)
+        if names is None or callable(names) or (holder == "index" and not hasattr(value, "iloc")):
+            continue
+        try:
+            return [*names]
+        except TypeError:
+            return []
+    return []
+
+
+def has_names(value: Any) -> bool:
+    """Whether numbers are in a data frame whose columns have names, and so have no order of their own.
+
+    Columns that are only numbered are an array's.
+    """
+    return not all(isinstance(name, Integral) for name in names_of(value))
+
+
+def named_column(table: Any, place: int) -> Any:
+    """A column of a data frame, by where it stands, as an array; of a row a cell."""
+    import numpy as np
+
+    if not hasattr(table, "columns"):
+        return np.asarray(table.iloc[place])
+    return np.asarray(table.iloc[:, place] if hasattr(table, "iloc") else table[names_of(table)[place]])
+
+
 def expect_numbers(value: Any, argument: str, what: str) -> Array:
     """An array of real numbers as float64, of whatever shape; NaN and infinity pass.
 
@@ -47,6 +80,8 @@ def expect_numbers(value: Any, argument: str, what: str) -> Array:
 
     if type(value) is np.ndarray and value.dtype == np.float64:
         return value
+    if has_names(value):
+        raise InputTypeError(f"{argument}: found a table whose columns have names, expected {what}")
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise InputError(f"{argument}: found an array with masked values, expected {what}")
     try:

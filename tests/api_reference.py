@@ -19,7 +19,7 @@ PAGE = Path(__file__).parent.parent / "docs" / "api.md"
 
 GROUPS = {
     "Descriptions": (
-        "load", "from_table", "load_tree", "load_mechanism", "load_wheeled", "library_names", "transform", "Units",
+        "load", "from_table", "load_tree", "load_mechanism", "load_wheeled", "library_names", "Units",
     ),
     "Models": ("Robot", "Tree", "Mechanism", "WheeledBase", "to_convention"),
     "Kinematics": (
@@ -33,14 +33,15 @@ GROUPS = {
     "Marks": (
         "check_pose", "check_configuration", "check_solutions", "check_table", "Tolerance", "default_tolerance",
     ),
-    "Rotations": (
+    "Poses and rotations": (
+        "pose", "pose_parts", "invert_pose", "transform",
         "rotation_from_rpy", "rpy_from_rotation", "rotation_from_euler", "euler_from_rotation",
         "rotation_from_quaternion", "quaternion_from_rotation", "rotation_from_axis_angle", "axis_angle_from_rotation",
         "rotation_from_rotvec", "rotvec_from_rotation",
     ),
     "Pictures": ("draw",),
     "Errors": ("RobokinError", "InputError", "InputTypeError", "DescriptionError"),
-    "Documents and notebooks": ("documents", "notebook"),
+    "Documents, data frames and notebooks": ("documents", "dataframes", "notebook"),
 }  # fmt: skip
 """Every public name under the heading where it is looked for."""
 

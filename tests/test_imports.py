@@ -17,7 +17,7 @@ ORDER = [
     "errors", "arrays", "expected", "unfinished_work", "files", "units", "number_text", "brief",
     "rotation_entries", "spatial", "model", "kernel", "jobs", "assembly", "kinematics", "formats", "tables", "inverse",
     "workspace", "mobility", "derivation", "grading", "pictures", "records", "reports", "quick", "drawings",
-    "symbol_matrices", "documents", "table_view", "notebook", "cli",
+    "symbol_matrices", "documents", "dataframes", "table_view", "notebook", "cli",
 ]  # fmt: skip
 """Each room imports only rooms before it."""
 
@@ -34,7 +34,7 @@ CALCULATING = [
 ]  # fmt: skip
 HOMES = {
     "yaml": "formats", "typer": "cli", "rich": "reports", "matplotlib": "pictures", "PIL": "pictures",
-    "pyarrow": "tables", "dask": "jobs", "distributed": "jobs",
+    "pyarrow": "tables", "dask": "jobs", "distributed": "jobs", "pandas": "dataframes",
 }  # fmt: skip
 
 ONE_NAME_EACH = {"__init__.py", "__main__.py"}

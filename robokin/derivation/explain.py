@@ -71,7 +71,7 @@ def explain_ik(
     """
     pose = target_poses(T)
     if pose.shape != (4, 4):
-        raise InputError(f"found targets of shape {pose.shape}, expected one (4, 4)")
+        raise InputError(f"T: found poses of shape {pose.shape}, expected one (4, 4)")
     near = None if near is None else np.asarray(near, dtype=np.float64)
     plan = _plan(robot, task, _held(robot, near))
     steps, sheets = follow(first_steps(plan, pose), plan.stages)

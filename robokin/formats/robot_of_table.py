@@ -4,16 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from robokin.errors import InputError
-from robokin.expected import expect_choice, expect_finite, expect_kind, expect_number
+from robokin.errors import InputError, shown
+from robokin.expected import (
+    expect_choice,
+    expect_finite,
+    expect_kind,
+    expect_number,
+    expect_numbers,
+    has_names,
+    named_column,
+    names_of,
+)
 from robokin.formats.pasted_description import Wishes, described_table
 from robokin.formats.read import read_text
 from robokin.model import Robot
 from robokin.units import METRES, RADIANS
 
 CONVENTIONS = ("standard", "modified")
+
+CELLS = ("theta", "d", "a", "alpha")
+"""The columns of a table of numbers, in their order."""
 
 
 def from_table(
@@ -46,11 +59,12 @@ def from_table(
         expect_kind(values, Mapping, "values", "numbers by their names")
     columns = None
     if not isinstance(table, str):
+        table = _in_order(table)
         rows = expect_finite(table, "table", "a text, or rows of theta, d, a and alpha")
         if rows.ndim != 2 or rows.shape[1] != 4 or not len(rows):
             raise InputError(f"table: found an array of shape {rows.shape}, expected rows of theta, d, a and alpha")
         table = "theta,d,a,alpha\n" + "\n".join(",".join(map(repr, row)) for row in rows.tolist())
-        types, columns = types or "R" * len(rows), ("theta", "d", "a", "alpha")
+        types, columns = types or "R" * len(rows), CELLS
         convention, length, angle = convention or "standard", length or "m", angle or "rad"
     said = {key: repr(expect_number(value, f"values[{key!r}]", "a number")) for key, value in (values or {}).items()}
     made = described_table(table, Wishes(name, convention, length, angle, types, columns, said))
@@ -59,3 +73,18 @@ def from_table(
     robot = read_text(made.text, "the table")
     assert isinstance(robot, Robot)
     return robot
+
+
+def _in_order(table: ArrayLike) -> ArrayLike:
+    """A data frame with the columns of a table as an array, in their order; all else as it is. Raises InputError."""
+    if not has_names(table):
+        return table
+    names = [str(name).strip().casefold() for name in names_of(table)]
+    if sorted(names) != sorted(CELLS):
+        raise InputError(
+            f"table: found the columns {shown(', '.join(names))}, expected {', '.join(CELLS)}, in any order"
+        )
+    columns = [
+        expect_numbers(named_column(table, names.index(name)), f"table, column '{name}'", "numbers") for name in CELLS
+    ]
+    return np.stack([np.atleast_1d(column) for column in columns], axis=-1)

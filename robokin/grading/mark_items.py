@@ -114,6 +114,12 @@ class Report(Brief):
         right = f"{self.passed} of {counted(len(self.counted), 'answer')} right"
         return f"<check {self.check} of {self.robot}: {right}, score {self.score:.4g}>"
 
+    def to_pandas(self) -> Any:
+        """The items as a data frame, with the columns of `robokin check -f csv`."""
+        import robokin  # the package's own face: frames are made in a room above this one
+
+        return robokin.dataframes.of(self)
+
     @cached_property
     def counted(self) -> tuple[Item, ...]:
         """The items but for repetitions."""

@@ -21,6 +21,7 @@ from robokin.inverse.analysis import Task
 from robokin.inverse.solve import TASKS, target_poses
 from robokin.kinematics.forward import forward_kinematics
 from robokin.model import Robot, expect_robot
+from robokin.model.named_values import plain_joint_values
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -126,7 +127,7 @@ def expect_configuration(robot: Robot, q: ArrayLike) -> Array:
     """Joint values q: (n,) [rad | m]. Raises InputError, also for a robot without joints."""
     if not robot.n:
         raise InputError(f"{robot.name} has no joints, expected a robot that can move")
-    return expect_finite(q, "q", f"{robot.n} finite joint values", (robot.n,))
+    return expect_finite(plain_joint_values(robot, q), "q", f"{robot.n} finite joint values", (robot.n,))
 
 
 def expect_target(T: ArrayLike) -> Array:

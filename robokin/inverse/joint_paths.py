@@ -21,6 +21,7 @@ from robokin.inverse.follow import MOST
 from robokin.kinematics.forward import forward_kinematics
 from robokin.kinematics.velocity import TaskName, dexterity, differential_kinematics, lost_directions, motion_task
 from robokin.model import CoupledRobot, Robot, expect_robot
+from robokin.model.named_values import plain_joint_values
 from robokin.model.robot import LIMIT_TOLERANCE
 
 if TYPE_CHECKING:
@@ -148,7 +149,7 @@ def even_times(steps: int) -> Array:
 def one_configuration(robot: Robot, q: ArrayLike, name: str) -> Array:
     """One configuration (n,) [rad | m] of a robot that can move. Raises InputError for anything else."""
     robot = expect_robot(robot)
-    values = expect_finite(q, name, f"{robot.n} finite joint values", (robot.n,))
+    values = expect_finite(plain_joint_values(robot, q, name), name, f"{robot.n} finite joint values", (robot.n,))
     if not robot.n:
         raise InputError(f"{robot.name} has no joints, expected a robot that can move")
     return values

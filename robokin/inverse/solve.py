@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
 from robokin.errors import InputError
-from robokin.expected import expect_choice, expect_flag, expect_kind, expect_numbers, expect_whole
+from robokin.expected import described, expect_choice, expect_flag, expect_kind, expect_numbers, expect_whole
 from robokin.inverse.analysis import Task, analysis_of
 from robokin.inverse.answered_batch import answered_batch
 from robokin.inverse.coupled_joints import solve_coupled
@@ -25,9 +25,8 @@ from robokin.inverse.target_block import Method, Request
 from robokin.jobs.ordered_map import MOST_CORES
 from robokin.kernel.native_kernel import native
 from robokin.model import CoupledRobot, Robot, expect_robot
-from robokin.spatial import nearest_rotation, rotation_error, transform
-from robokin.spatial.rotations import DIGITS_LOST
-from robokin.spatial.transforms import FARTHEST
+from robokin.model.named_values import plain_joint_values, plain_poses
+from robokin.spatial.rigid_poses import rigid
 
 METHODS = ("auto", "analytic", "numeric")
 TASKS = ("pose", "approach", "position")
@@ -68,7 +67,7 @@ def solve_ik(
         one = _one_target(robot, T, limits, near, method, task, most, seed, hold)
         if one is not None:
             return one
-    poses = target_poses(T)
+    poses = target_poses(plain_poses(T, "T", robot, task) if isinstance(robot, Robot) else T)
     alone = poses.ndim == 2
     targets = poses.reshape(-1, 4, 4)
     batch = solve_many(robot, targets, limits, near, method, task, most, seed, turns, hold, alone, cores)
@@ -177,41 +176,32 @@ def solve_many(
     return with_turn_counts(robot, batch) if limits else batch
 
 
-def target_poses(T: ArrayLike) -> Array:
+def target_poses(T: ArrayLike, argument: str = "T") -> Array:
     """Targets (4, 4) or (m, 4, 4) [m] as an array, each with the rotation that is nearest to the given one.
 
     Rotations may be off by `DIGITS_LOST`: a matrix copied from print has three or four digits. Raises InputError for
     what are no rigid transforms, saying how far off.
     """
-    poses = np.array(expect_numbers(T, "T", "an array of numbers (4, 4) or (m, 4, 4)"))
+    poses = np.array(expect_numbers(plain_poses(T, argument), argument, "an array of numbers (4, 4) or (m, 4, 4)"))
     if native is not None and poses.ndim in (2, 3) and poses.shape[-2:] == (4, 4) and native.rigid(poses):
         return poses
     if poses.ndim not in (2, 3) or poses.shape[-2:] != (4, 4):
-        raise InputError(f"found a target of shape {poses.shape}, expected (4, 4) or (m, 4, 4)")
-    if not np.all(np.isfinite(poses)):
-        raise InputError("found a target with numbers that are not finite, expected finite numbers")
-    if np.any(np.abs(poses[..., :3, 3]) > FARTHEST):
-        raise InputError(f"found a target too far away, expected less than {FARTHEST:g} m")
-    if np.any(np.abs(poses[..., 3, :] - [0.0, 0.0, 0.0, 1.0]) > 1e-9):
-        raise InputError("found a target whose last row is not 0 0 0 1, expected a homogeneous matrix")
-    with np.errstate(over="ignore", invalid="ignore"):  # of great numbers the products overflow, and are refused
-        off = rotation_error(poses[..., :3, :3])
-    if not np.all(off <= DIGITS_LOST):
-        raise InputError(f"found a target whose rotation is off by {np.max(off):.2g}, expected at most {DIGITS_LOST:g}")
-    if np.any(off > 1e-14):
-        poses = transform(nearest_rotation(poses[..., :3, :3]), poses[..., :3, 3])
-    return poses
+        found = described(poses) if poses.ndim else "a single number"
+        raise InputError(f"{argument}: found {found}, expected a pose (4, 4) or poses (m, 4, 4)")
+    return rigid(poses, argument)
 
 
 def _wished(robot: Robot, near: ArrayLike | None) -> Array | None:
     """The joint values `near` (n,), checked."""
     if near is None:
         return None
-    near = np.array(expect_numbers(near, "near", f"{robot.n} joint values"))
+    near = np.array(expect_numbers(plain_joint_values(robot, near, "near"), "near", f"{robot.n} joint values"))
     if near.shape != (robot.n,):
-        raise InputError(f"near has {near.size} values, expected {robot.n}: one for each joint of {robot.name}")
+        raise InputError(
+            f"near: found {described(near)}, expected {robot.n} values, one for each joint of {robot.name}"
+        )
     if not np.all(np.isfinite(near)):
-        raise InputError("near holds a number that is not finite, expected finite numbers")
+        raise InputError("near: found a number that is not finite, expected finite numbers")
     return near
 
 

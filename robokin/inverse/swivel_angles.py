@@ -55,7 +55,7 @@ def swivel_solutions(robot: Robot, T: ArrayLike, swivel: float, limits: bool = T
     arm = _expect_swivel_arm(robot)
     poses = target_poses(T)
     if poses.ndim != 2:
-        raise InputError(f"found targets of shape {poses.shape}, expected one (4, 4)")
+        raise InputError(f"T: found poses of shape {poses.shape}, expected one (4, 4)")
     angle = expect_numbers(swivel, "swivel", "an angle [rad]")
     if angle.ndim or not np.isfinite(angle):
         raise InputError(f"swivel: found {swivel!r}, expected one finite angle [rad]")

@@ -162,7 +162,7 @@ def _wishes(tree: Tree, targets: Mapping[str, ArrayLike], task: Task | Mapping[s
     found = []
     for tip, T in targets.items():
         check_tip(tree, tip)
-        pose = target_poses(T)
+        pose = target_poses(T, f"targets['{shown(tip)}']")
         if pose.ndim != 2:
             raise InputError(f"targets: found an array of shape {pose.shape} for {shown(tip)}, expected (4, 4)")
         own = task.get(tip, "pose") if isinstance(task, Mapping) else task

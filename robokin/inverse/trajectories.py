@@ -33,6 +33,7 @@ from robokin.inverse.tool_curves import ToolCurve
 from robokin.kinematics.forward import forward_kinematics
 from robokin.kinematics.velocity import dexterity
 from robokin.model import CoupledRobot, Robot, expect_robot
+from robokin.model.named_values import plain_joint_values
 
 PROFILES = ("cubic", "quintic", "trapezoidal")
 PASSINGS = ("stop", "spline", "blend")
@@ -73,7 +74,7 @@ def trajectory(
     """
     robot = expect_robot(robot)
     what = f"two rows or more of {robot.n} finite joint values"
-    way = expect_finite(points, "points", what)
+    way = expect_finite(plain_joint_values(robot, points, "points"), "points", what)
     if way.ndim != 2 or len(way) < 2 or way.shape[1] != robot.n:
         raise InputError(f"points: found an array of shape {way.shape}, expected {what}")
     if not robot.n:

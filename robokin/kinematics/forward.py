@@ -17,6 +17,7 @@ from robokin.kernel.frames import fill_poses, frames, pose, program_to_tool, run
 from robokin.kernel.native_kernel import native
 from robokin.kernel.straight_line import Straight, straight_frame
 from robokin.model import CoupledRobot, Robot, expect_robot
+from robokin.model.named_values import plain_joint_values
 from robokin.spatial import exact
 
 FLOATS = np.dtype(np.float64)
@@ -113,11 +114,11 @@ def joint_values(robot: Robot, q: ArrayLike) -> Array:
     if type(q) is np.ndarray and q.dtype == FLOATS and isinstance(robot, Robot) and q.shape[-1:] == (robot.n,):
         return q
     robot = expect_robot(robot)
-    q = expect_numbers(q, "q", "joint values: numbers in an array (..., n)")
+    q = expect_numbers(plain_joint_values(robot, q), "q", "joint values: numbers in an array (..., n)")
     if q.ndim == 0 or q.shape[-1] != robot.n:
-        given = "a single number" if q.ndim == 0 else f"{q.shape[-1]}"
+        given = "a single number" if q.ndim == 0 else f"{q.shape[-1]} in the last dimension"
         raise InputError(
-            f"q has {given} in its last dimension, expected {robot.n}: "
+            f"q: found {given}, expected {robot.n}: "
             f"one value for each joint of {robot.name} ({robot.types or 'no joints'})"
         )
     return q

@@ -12,9 +12,9 @@ while the point at which m is taken stands still.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
-from typing import Literal, SupportsIndex, get_args
+from typing import Any, Literal, SupportsIndex, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +30,7 @@ from robokin.kinematics.forward import joint_frames
 from robokin.kinematics.jacobian import jacobian
 from robokin.kinematics.structure import arm_size, structure_of
 from robokin.model import CoupledRobot, Robot, expect_robot
+from robokin.model.named_values import plain_joint_values
 
 TaskName = Literal["pose", "position", "orientation"]
 
@@ -94,12 +95,7 @@ class Differential(Answer):
             raise InputTypeError(f"index: found {described(i)}, expected the number of a configuration, from 0")
         if self.q.ndim < 2:
             raise InputTypeError("found the answer at one configuration, which has no parts, expected q: (m, n)")
-        parts = {
-            part.name: getattr(self, part.name)[i]
-            for part in fields(self)
-            if part.name not in ("task", "robot", "frame")
-        }
-        return replace(self, **parts)
+        return _each(self, lambda values: values[i])
 
     def __iter__(self) -> Iterator[Differential]:
         """The answers in the order of the configurations."""
@@ -126,6 +122,17 @@ class Lost(Brief):
 
     twist: Array
     words: str
+
+
+def _each(found: Differential, changed: Callable[[Any], Any]) -> Differential:
+    """An answer with all its arrays changed alike."""
+    names = [part.name for part in fields(found) if part.name not in ("task", "robot", "frame")]
+    return replace(found, **{name: changed(getattr(found, name)) for name in names})
+
+
+def block_of(found: Differential) -> Differential:
+    """The answer at one configuration as that of a block of one; of a block as it is."""
+    return found if found.q.ndim > 1 else _each(found, lambda values: np.asarray(values)[None])
 
 
 def motion_task(robot: Robot, name: TaskName | None = None) -> MotionTask:
@@ -188,7 +195,7 @@ def differential_kinematics(
     Source: T. Yoshikawa, Manipulability of robotic mechanisms, Int. J. Robotics Research 4(2), 1985.
     """
     kind = motion_task(robot, task)
-    q = expect_finite(q, "q", "finite joint values (..., n)")
+    q = expect_finite(plain_joint_values(robot, q), "q", "finite joint values (..., n)")
     J = jacobian(robot, q, frame)
     if not np.isfinite(J).all():
         raise InputError("q: the pose is too far away for a number, expected less")

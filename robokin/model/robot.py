@@ -17,6 +17,7 @@ from robokin.brief import Brief, Described
 from robokin.errors import InputError, Note, shown
 from robokin.expected import expect_kind, expect_numbers
 from robokin.model.graph import NO_LIMITS, Graph, GraphJoint, Tip
+from robokin.model.named_values import plain_joint_values
 from robokin.model.robot_methods import RobotMethods
 from robokin.spatial import exact, invert, translation_transform, z_to
 from robokin.spatial.dh import modified_dh, standard_dh
@@ -193,7 +194,7 @@ class Robot(RobotMethods, Described):
 
         Raises InputError when q has another length than n.
         """
-        q = expect_numbers(q, "q", f"joint values: numbers in an array (..., {self.n})")
+        q = expect_numbers(plain_joint_values(self, q), "q", f"joint values: numbers in an array (..., {self.n})")
         if q.ndim == 0 or q.shape[-1] != self.n:
             raise InputError(
                 f"q: found an array of shape {q.shape}, expected (..., {self.n}): one value for each joint"

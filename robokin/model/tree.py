@@ -21,6 +21,7 @@ from robokin.errors import InputError, Note, shown
 from robokin.expected import expect_kind, expect_numbers
 from robokin.model.coupled_robot import CoupledRobot, drive_of, driven
 from robokin.model.graph import Graph, GraphJoint
+from robokin.model.named_values import plain_joint_values
 from robokin.model.robot import Joint, JointType, Robot, within
 from robokin.spatial import exact, translation_transform
 from robokin.units import Units
@@ -131,7 +132,7 @@ class Tree(Described):
 
         Raises InputError where it has another length than n.
         """
-        values = expect_numbers(q, "q", "joint values: numbers in an array (..., n)")
+        values = expect_numbers(plain_joint_values(self, q), "q", "joint values: numbers in an array (..., n)")
         if values.ndim == 0 or values.shape[-1] != self.n:
             given = "a single number" if values.ndim == 0 else f"{values.shape[-1]}"
             raise InputError(

@@ -25,7 +25,7 @@ ROWS = ("vx", "vy", "vz", "wx", "wy", "wz")
 """The Jacobian's rows: linear velocity, then angular."""
 
 
-def _columns(n: int) -> list[str]:
+def joint_and_matrix_columns(n: int) -> list[str]:
     """The columns of the joint values and of the Jacobian."""
     gap = "_" if n > 9 else ""  # j111 would be two things
     return [f"q{i}" for i in range(1, n + 1)] + [f"j{i}{gap}{k}" for i in range(1, 7) for k in range(1, n + 1)]
@@ -36,7 +36,7 @@ def taken_by(kind: str, n: int) -> list[str]:
     if kind in ("csv", *KINDS):
         values = [f"sigma{i}" for i in range(1, n + 1)]
         torques = [f"tau{i}" for i in range(1, n + 1)]
-        return [*_columns(n), "rank", *values, "manipulability", "condition", *torques]
+        return [*joint_and_matrix_columns(n), "rank", *values, "manipulability", "condition", *torques]
     return ["schema", "robot", "id", "units", "jacobian_units", "q", "frame", "task", "jacobian", "rank", "full_rank",
             "size", "singular_values", "manipulability", "condition", "singular_direction",
             "null_space_joints", "force", "torques"]  # fmt: skip
@@ -89,7 +89,7 @@ class JacobianReport(AnswerStream):
 
     def csv(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """A row a configuration; an infinite condition number is an empty cell."""
-        names = _columns(self.records.robot.n)
+        names = joint_and_matrix_columns(self.records.robot.n)
         header = b""
         for q, found in self.found(blocks):
             if not header:

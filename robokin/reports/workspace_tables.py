@@ -5,7 +5,6 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from math import floor, log10
-from typing import Any
 
 import numpy as np
 

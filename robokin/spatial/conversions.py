@@ -12,13 +12,11 @@ from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.expected import expect_finite
 from robokin.spatial import rotations
+from robokin.spatial.rigid_poses import CLEAN
 from robokin.spatial.rotations import DIGITS_LOST, nearest_rotation, rotation_error
 
 LEAST = 1e-12
 """Length of an axis or a quaternion below which it says no direction."""
-
-CLEAN = 1e-14
-"""A rotation that is off by no more is taken as it stands: the rounding of a few products."""
 
 
 def rotation_from_rpy(rpy: ArrayLike) -> Array:
@@ -36,7 +34,7 @@ def rpy_from_rotation(R: ArrayLike) -> Array:
     Raises InputError for what is no rotation to 1e-3.
     Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.4.2.
     """
-    return rotations.rpy_from_rotation(_rotations(R))
+    return rotations.rpy_from_rotation(rotation_of(R))
 
 
 def rotation_from_euler(euler: ArrayLike) -> Array:
@@ -54,7 +52,7 @@ def euler_from_rotation(R: ArrayLike) -> Array:
     Raises InputError for what is no rotation to 1e-3.
     Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.4.1.
     """
-    return rotations.euler_from_rotation(_rotations(R))
+    return rotations.euler_from_rotation(rotation_of(R))
 
 
 def rotation_from_quaternion(quaternion: ArrayLike) -> Array:
@@ -73,7 +71,7 @@ def quaternion_from_rotation(R: ArrayLike) -> Array:
     Raises InputError for what is no rotation to 1e-3.
     Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.6.
     """
-    return rotations.quaternion_from_rotation(_rotations(R))
+    return rotations.quaternion_from_rotation(rotation_of(R))
 
 
 def rotation_from_axis_angle(axis: ArrayLike, angle: ArrayLike) -> Array:
@@ -97,7 +95,7 @@ def axis_angle_from_rotation(R: ArrayLike) -> tuple[Array, Array]:
     Raises InputError for what is no rotation to 1e-3.
     Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.5.
     """
-    return rotations.axis_angle_from_rotation(_rotations(R))
+    return rotations.axis_angle_from_rotation(rotation_of(R))
 
 
 def rotation_from_rotvec(rotvec: ArrayLike) -> Array:
@@ -119,7 +117,7 @@ def rotvec_from_rotation(R: ArrayLike) -> Array:
     Raises InputError for what is no rotation to 1e-3.
     Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, section 2.5.
     """
-    axis, angle = rotations.axis_angle_from_rotation(_rotations(R))
+    axis, angle = rotations.axis_angle_from_rotation(rotation_of(R))
     return np.asarray(axis * angle[..., None])
 
 
@@ -140,8 +138,8 @@ def _directions(vectors: Array, argument: str) -> Array:
     return np.asarray(vectors / scale)
 
 
-def _rotations(R: ArrayLike) -> Array:
-    """Rotations (..., 3, 3); those whose digits were cut in print are made the nearest one."""
+def rotation_of(R: ArrayLike) -> Array:
+    """Rotations (..., 3, 3); those whose digits were cut in print are made the nearest one. Raises InputError."""
     array = expect_finite(R, "R", "rotation matrices (..., 3, 3)")
     if array.ndim < 2 or array.shape[-2:] != (3, 3):
         raise InputError(f"R: found an array of shape {array.shape}, expected rotation matrices (..., 3, 3)")

@@ -161,7 +161,7 @@ def test_what_cannot_be_held(hold, words):
 def test_near_is_checked_against_the_whole_robot():
     robot = robokin.load("panda")
     T = robokin.forward_kinematics(robot, np.full(7, 0.3))
-    with pytest.raises(InputError, match="near has 6 values, expected 7"):
+    with pytest.raises(InputError, match=r"near: found an array of shape \(6,\), expected 7 values"):
         robokin.solve_ik(robot, T, near=np.zeros(6), hold={2: 0.3})
 
 

@@ -264,7 +264,7 @@ def test_what_is_no_target_is_refused(torso):
         (lambda: robokin.solve_tips(HAND, {}), "expected a pose"),
         (lambda: robokin.solve_tips(HAND, {"indx": T}), "did you mean 'index'"),
         (lambda: robokin.solve_tips(HAND, {"foot": T}), "expected one of thumb, index"),
-        (lambda: robokin.solve_tips(HAND, {"index": np.eye(3)}), "found a target of shape"),
+        (lambda: robokin.solve_tips(HAND, {"index": np.eye(3)}), "targets['index']: found an array of shape (3, 3)"),
         (lambda: robokin.solve_tips(HAND, {"index": np.stack([T, T])}), "for index, expected"),
         (lambda: robokin.solve_tips(HAND, {"index": T * np.nan}), "not finite"),
         (lambda: robokin.solve_tips(HAND, {"index": T}, "place"), "expected 'pose'"),
