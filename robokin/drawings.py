@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 KINDS = ("svg", "png", "pdf", "html", "text", "gif")
 
-FRAME = 480
+FRAME = 640
 """Height in pixels of the frame in which a notebook shows a page that turns."""
 
 

@@ -76,7 +76,9 @@ def _parts(value: Answer | Brief) -> Sequence[Part]:
     if isinstance(value, Answer) or type(value).__repr__ is not Brief.__repr__:
         return [Heading(repr(value), "")]
     rows = ((part.name, getattr(value, part.name)) for part in fields(value))  # type: ignore[arg-type]
-    drawn = _table(["", ""], ([name, str(one) if isinstance(one, str) else shown_value(one)] for name, one in rows))
+    drawn = _table(
+        ["", ""], ([name, str(one) if isinstance(one, str) else shown_value(one)] for name, one in rows), [""]
+    )
     drawn.headed = False
     return [Heading(type(value).__name__, ""), drawn]
 

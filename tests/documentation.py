@@ -1,8 +1,8 @@
 """What the pages show: find the console blocks, run them, compare, and rewrite them.
 
 `make docs` runs this file. It writes a page for each command that has none, the list of commands in docs/README.md, the
-reference of the public names (docs/api.md), and in README.md and docs/ what each command prints today, wherever that is
-not what the page shows.
+reference of the public names (docs/api.md), and in README.md, docs/ and its notebooks what each command and each cell
+shows today, wherever that is not what the page shows.
 
 A console block holds commands after `$ ` (further lines of one after `> `) and what they print. The blocks of a page
 run from top to bottom in one folder of their own, so what a command writes is there for the next one. The folder is
@@ -26,6 +26,7 @@ from pathlib import Path
 from unittest import mock
 
 import api_reference
+import notebooks
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -214,6 +215,12 @@ def main() -> None:
         if now != text:
             page.write_text(now)
             print(f"rewritten: {page.relative_to(ROOT)}")
+    for path in notebooks.notebooks() if not wanted else ():
+        text = path.read_text()
+        now = notebooks.text_of(notebooks.run(notebooks.read(path)))
+        if not same(now, text):
+            path.write_text(now)
+            print(f"rewritten: {path.relative_to(ROOT)}")
 
 
 if __name__ == "__main__":
