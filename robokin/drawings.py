@@ -54,7 +54,9 @@ class Drawing:
 
     def _repr_html_(self) -> str | None:
         if self.kind == "text":
-            return f"<pre>{escape(self.data.decode())}</pre>"
+            from robokin.reports.html_pages import html_text
+
+            return html_text(self.data.decode())
         if self.kind != "html":
             return None
         page = escape(self.data.decode(), quote=True)

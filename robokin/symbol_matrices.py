@@ -66,9 +66,9 @@ class Symbols(Answer):
         return f"<symbols of {self.robot.id or self.robot.name}: {' '.join(self.kinematics.matrices)}>"
 
     def _repr_html_(self) -> str:
-        from html import escape
+        from robokin.reports.html_pages import html_text
 
-        return f"<pre>{escape(str(self))}</pre>"
+        return html_text(str(self))
 
 
 def symbols(robot: Robot, numbers: bool = False, frames: bool = False, units: Units | None = None) -> Symbols:

@@ -478,6 +478,8 @@ def test_whatever_a_parameter_is_set_to_ends_in_a_robot_or_a_sentence(value):
         (lambda: robokin.forward_kinematics(PUMA, [1j] * 6), ["complex numbers"]),
         (lambda: robokin.forward_kinematics(PUMA, [1, [2]]), ["rows of different lengths"]),
         (lambda: robokin.load(None), ["found None", "a name of the library"]),
+        (lambda: PUMA.ik("Trans(1,2,3)"), ["T: found the string 'Trans(1,2,3)'"]),
+        (lambda: robokin.Robot.from_dh(None), ["table: found None", "rows of theta, d, a and alpha"]),
     ],
 )
 def test_a_wrong_type_is_a_type_error_with_a_sentence(call, said):
@@ -487,6 +489,30 @@ def test_a_wrong_type_is_a_type_error_with_a_sentence(call, said):
     assert isinstance(caught.value, TypeError) or "rows" in str(caught.value)
     for words in said:
         assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: PUMA.fk([0] * 5), "q: found 5 in the last dimension, expected 6"),
+        (lambda: PUMA.fk(1.0), "q: found a single number, expected 6"),
+        (lambda: robokin.tip_poses(HAND, [0] * 20), "q: found 20 in the last dimension, expected 21"),
+        (lambda: PUMA.ik(np.eye(3)), r"T: found an array of shape \(3, 3\), expected a pose"),
+        (lambda: PUMA.ik(2 * np.eye(4)), "T: found a pose whose last row"),
+        (lambda: PUMA.ik(T, near=[1, 2]), r"near: found an array of shape \(2,\), expected 6 values"),
+        (lambda: PUMA.ik(T, near=[np.nan] * 6), "near: found a number that is not finite"),
+        (lambda: robokin.follow_line(PLANAR, [0, 0], [PLANAR_T] * 2), r"T: found poses of shape \(2, 4, 4\)"),
+        (lambda: robokin.swivel_angle(IIWA, np.zeros(6)), r"q: found an array of shape \(6,\)"),
+        (lambda: robokin.swivel_solutions(IIWA, [IIWA_T] * 2, 0.1), "T: found poses of shape"),
+        (lambda: robokin.solve_tips(HAND, {"index": [1, 2, 3]}), r"targets\['index'\]: found an array of shape"),
+        (lambda: robokin.mobility_of(FOUR_BAR, ("a", "b")), "between: found the unknown link 'a'"),
+        (lambda: robokin.from_table([[0, 1, 0, 0]], types="RR"), "^types: found 'RR', expected a letter"),
+        (lambda: robokin.from_table("nonsense"), "^table: found no table"),
+    ],
+)
+def test_a_message_names_the_argument(call, said):
+    with pytest.raises(InputError, match=said):
+        call()
 
 
 # Pictures, symbols, transforms, marks ----------------------------------------------------------------------------

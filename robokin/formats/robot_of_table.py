@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -24,6 +25,8 @@ from robokin.model import Robot
 from robokin.units import METRES, RADIANS
 
 CONVENTIONS = ("standard", "modified")
+
+OPTION = re.compile(r"--(\w+)")
 
 CELLS = ("theta", "d", "a", "alpha")
 """The columns of a table of numbers, in their order."""
@@ -67,7 +70,14 @@ def from_table(
         types, columns = types or "R" * len(rows), CELLS
         convention, length, angle = convention or "standard", length or "m", angle or "rad"
     said = {key: repr(expect_number(value, f"values[{key!r}]", "a number")) for key, value in (values or {}).items()}
-    made = described_table(table, Wishes(name, convention, length, angle, types, columns, said))
+    try:
+        made = described_table(table, Wishes(name, convention, length, angle, types, columns, said))
+    except InputError as error:
+        if type(error) is not InputError:
+            raise
+        # The reader speaks of the command's options: here they are arguments, and what has none is the table's.
+        sentence = OPTION.sub(r"\1", str(error).replace("--set ", "values: "))
+        raise InputError(sentence if OPTION.match(str(error)) else f"table: {sentence}") from None
     if made.missing:
         raise InputError(f"the table gives no value for {', '.join(made.missing)}, expected them in values")
     robot = read_text(made.text, "the table")

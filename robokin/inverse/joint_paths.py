@@ -7,8 +7,8 @@ et al., Robotics: Modelling, Planning and Control, 2009, section 4.2).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal, SupportsIndex, cast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike

@@ -58,7 +58,7 @@ def follow_line(
     first = one_configuration(robot, start, "start")
     target = target_poses(T)
     if target.ndim != 2:
-        raise InputError(f"found targets of shape {target.shape}, expected one, (4, 4)")
+        raise InputError(f"T: found poses of shape {target.shape}, expected one (4, 4)")
     expect_whole(steps, "steps", 1, MOST)
     follows = None if task is None else cast(PathTask, expect_choice(task, ("pose", "position"), "task"))
     manner = Manner("line", limits=expect_flag(limits, "limits"), follows=follows)

@@ -15,6 +15,7 @@ from robokin.inverse.verify import within_limits
 from robokin.kernel.chain import chain_of
 from robokin.kernel.frames import pose
 from robokin.model import Robot, expect_robot
+from robokin.model.named_values import plain_joint_values
 
 SIGNS = np.array([[e, s, w] for e in (0, 1) for s in (0, 1) for w in (0, 1)])
 """All signs of elbow, shoulder and wrist."""
@@ -31,11 +32,11 @@ def swivel_angle(robot: Robot, q: ArrayLike) -> Array:
     limits and global configuration control, IEEE Trans. Robotics 24(5), 2008.
     """
     arm = _expect_swivel_arm(robot)
-    values = expect_numbers(q, "q", "7 joint values, or rows of them")
+    values = expect_numbers(plain_joint_values(robot, q), "q", "7 joint values, or rows of them")
     if values.ndim == 0 or values.shape[-1] != 7:
-        raise InputError(f"found joint values of shape {values.shape}, expected (..., 7)")
+        raise InputError(f"q: found an array of shape {values.shape}, expected joint values (..., 7)")
     if not np.all(np.isfinite(values)):
-        raise InputError("q holds a number that is not finite, expected finite numbers")
+        raise InputError("q: found a number that is not finite, expected finite numbers")
     rows = values.reshape(-1, 7)
     curves = swivel_curves(arm, pose(arm.chain, rows))
     here = np.arange(len(rows))

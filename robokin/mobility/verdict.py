@@ -198,9 +198,9 @@ def _between(mechanism: Mechanism, between: tuple[str, str] | None) -> tuple[str
     for name in between:
         if name not in mechanism.links:
             hint = did_you_mean(name, mechanism.links) or f", expected one of {', '.join(mechanism.links[:12])}"
-            raise InputError(f"found the unknown link '{name}'{hint}")
+            raise InputError(f"between: found the unknown link '{name}'{hint}")
     if between[0] == between[1]:
-        raise InputError(f"found the link '{between[0]}' twice, expected two different links")
+        raise InputError(f"between: found the link '{between[0]}' twice, expected two different links")
     return between
 
 

@@ -134,10 +134,8 @@ class Tree(Described):
         """
         values = expect_numbers(plain_joint_values(self, q), "q", "joint values: numbers in an array (..., n)")
         if values.ndim == 0 or values.shape[-1] != self.n:
-            given = "a single number" if values.ndim == 0 else f"{values.shape[-1]}"
-            raise InputError(
-                f"q has {given} in its last dimension, expected {self.n}: one value for each joint of {self.name}"
-            )
+            given = "a single number" if values.ndim == 0 else f"{values.shape[-1]} in the last dimension"
+            raise InputError(f"q: found {given}, expected {self.n}: one value for each joint of {self.name}")
         return values
 
     def robot(self, tip: str | None = None, root: str | None = None) -> Robot:

@@ -25,8 +25,13 @@ def _part(part: Part) -> str:
         rest = f"<br>{escape(part.rest)}" if part.rest else ""
         return f"<p><b>{escape(part.text)}</b>{rest}</p>"
     if "\n" in part.strip():
-        return f"<pre>{escape(part)}</pre>"
+        return html_text(part)
     return f"<p>{escape(part)}</p>" if part else ""
+
+
+def html_text(text: str) -> str:
+    """A text whose letters stand below one another, also where a notebook's own style would have it otherwise."""
+    return f'<pre style="font-family: monospace; line-height: 1.2">{escape(text)}</pre>'
 
 
 def html_table(drawn: Table, whole: int | None = None) -> str:

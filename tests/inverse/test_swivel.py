@@ -285,7 +285,7 @@ def test_the_swivel_angle_is_the_elbows_about_the_line():
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (lambda robot: robokin.swivel_angle(robot, [0.0] * 6), r"found joint values of shape \(6,\), expected"),
+        (lambda robot: robokin.swivel_angle(robot, [0.0] * 6), r"q: found an array of shape \(6,\), expected"),
         (lambda robot: robokin.swivel_angle(robot, [np.nan] * 7), "expected finite numbers"),
         (lambda robot: robokin.swivel_solutions(robot, np.eye(4)[None], 0.1), "expected one"),
         (lambda robot: robokin.swivel_solutions(robot, np.eye(4), [0.1]), "expected one finite angle"),
