@@ -31,10 +31,12 @@ MODULE = [
     "descents.c",
     "elimination.c",
     "number_text.c",
+    "swivel_forms.c",
 ]
 PLAIN = [
     "decimal.c",
     "lanes_base.c",
+    "swivel.c",
 ]
 
 # Each product and sum is rounded by itself: the same digits with every set of instructions.

@@ -20,6 +20,7 @@ from robokin.inverse.plain_targets import PlainBlock, kernel_form
 from robokin.inverse.single_answer import FAR, result_of
 from robokin.inverse.solutions import BatchResult, Result
 from robokin.inverse.solve_blocks import BLOCK
+from robokin.inverse.swivel_block import SwivelBlock, swivel_request
 from robokin.inverse.target_block import Request, TargetBlock
 from robokin.jobs.ordered_map import ordered_map
 
@@ -43,9 +44,10 @@ def answered_batch(request: Request, T: Array, cores: int | None) -> BatchResult
     """The answers for targets T (m, 4, 4) [m], on some cores, all usable ones for None."""
     parts: list[_Share] = []
     left = None
-    if kernel_form(request) is not None:
+    kind = _native_kind(request)
+    if kind is not None:
         lefts = [np.empty(0, dtype=np.intp)]
-        answers = ordered_map(partial(PlainBlock, request), _blocks(T), cores)
+        answers = ordered_map(partial(kind, request), _blocks(T), cores)
         for start, plain in zip(_starts(T), answers, strict=True):
             lefts.append(start + np.flatnonzero(~plain.plain))
             whole = slice(start, start + len(plain.plain))
@@ -60,6 +62,13 @@ def answered_batch(request: Request, T: Array, cores: int | None) -> BatchResult
     for part in parts:
         part.block.request = request
     return _batch(request, len(T), parts)
+
+
+def _native_kind(request: Request) -> type[PlainBlock | SwivelBlock] | None:
+    """The blocks of the native kernel that a request is for, if any."""
+    if kernel_form(request) is not None:
+        return PlainBlock
+    return None if swivel_request(request) is None else SwivelBlock
 
 
 def _starts(T: Array) -> range:

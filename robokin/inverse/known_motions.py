@@ -88,9 +88,7 @@ def known_families(known: SwivelAnswers, i: int, limits: Array, listed: Array) -
         found, fits = swivel_arcs(curves, pieces, chosen, limits)
         return found, bool(fits.all())
 
-    with np.errstate(invalid="ignore"):
-        width = limits[:, 1] - limits[:, 0]
-    if np.any(np.isfinite(width) & (width > TURN + LIMIT_TOLERANCE)) and not arcs()[1]:
+    if turns_on(limits) and not arcs()[1]:
         return None
     signs = pieces.signs[chosen]
     motions, of = np.unique(signs, axis=0, return_inverse=True)
@@ -105,6 +103,13 @@ def known_families(known: SwivelAnswers, i: int, limits: Array, listed: Array) -
         )
         families.append(Family(moving[number], 1, True, own, int(stands[number])))
     return tuple(families)
+
+
+def turns_on(limits: Array) -> bool:
+    """Whether some limits (7, 2) [rad] are more than a turn apart: a joint may then turn on beyond one of them."""
+    with np.errstate(invalid="ignore"):
+        width = limits[:, 1] - limits[:, 0]
+    return bool(np.any(np.isfinite(width) & (width > TURN + LIMIT_TOLERANCE)))
 
 
 def _one(arcs: Callable[[], tuple[list[Array], bool]], k: int) -> Array:

@@ -9,7 +9,6 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.claims import BASES
-from robokin.inverse.known_motions import known_families
 from robokin.inverse.self_motion.arcs import arcs_of_each
 from robokin.inverse.self_motion.curve_crossings import crossings
 from robokin.inverse.self_motion.redundant import NOT_FOUND, seeds_of
@@ -32,19 +31,20 @@ def result_of(request: Request, block: TargetBlock, i: int) -> Result:
     analysis, found = request.analysis, block.found
     rows = slice(np.searchsorted(found.index, i), np.searchsorted(found.index, i, side="right"))
     q, position, angle = found.q[rows], found.position[rows].tolist(), found.angle[rows].tolist()
-    first, inside, free = rows.start, block.inside[rows].tolist(), block.free[rows]
-    names = [partial(_name, block, int(first) + k) for k in range(len(q))]
+    first, inside = int(rows.start), block.inside[rows].tolist()
+    names, free = ([partial(find, block, first + k) for k in range(len(q))] for find in (_name, _free))
     solutions = tuple(map(named_later, names, q, inside, position, angle, free))
     method = "numeric" if request.method == "numeric" else analysis.method
     sets = families_of(request, block, i, q)
-    complete = bool(block.claims.basis[i]) and not block.cut[i]
+    basis = bool(block.claims.basis[i])
+    complete = basis and not block.cut[i]
     idle = {i + 1 for i in analysis.idle}
     postures = complete and all(idle.issuperset(solution.free) for solution in solutions)
     known = {joint for family in sets for joint in family.joints} | idle
-    known_all = all(known.issuperset(solution.free) for solution in solutions)
+    known_all = basis and all(known.issuperset(solution.free) for solution in solutions)
     complete = complete and known_all and not (idle and solutions)
-    all_motions = bool(block.claims.basis[i]) and known_all and not (idle and solutions)
-    if request.motions and block.swivel is not None and block.swivel.known[i] and solutions:
+    all_motions = known_all and not (idle and solutions)
+    if request.motions and solutions and block.in_closed_form(i):
         all_motions = all(arc.swivel is not None for family in sets for arc in family.arcs)
     tried, same = block.claims.candidates, block.claims.duplicates
     found_of = {} if tried is None or same is None else {"found": int(tried[i]), "duplicates": int(same[i])}
@@ -55,7 +55,7 @@ def result_of(request: Request, block: TargetBlock, i: int) -> Result:
         "counts": {**found_of, "closing": int(block.closing[i]), **within, "listed": len(solutions)},
         "postures": postures,
         "basis": BASES[block.claims.basis[i]] if complete else None,
-        "all_known": bool(block.claims.basis[i]) and known_all,
+        "all_known": known_all,
         "certificate": block.claims.sentence(i),
     }
     if solutions:
@@ -66,6 +66,10 @@ def result_of(request: Request, block: TargetBlock, i: int) -> Result:
 
 def _name(block: TargetBlock, row: int) -> str:
     return block.names[row]
+
+
+def _free(block: TargetBlock, row: int) -> tuple[int, ...]:
+    return block.free[row]
 
 
 def families_of(request: Request, block: TargetBlock, i: int, q: Array) -> tuple[Family, ...]:
@@ -105,13 +109,12 @@ def _redundant_families(request: Request, block: TargetBlock, i: int, q: Array) 
     analysis, limits = request.analysis, request.own_limits
     if not len(q):
         return ()
-    if block.swivel is not None and block.swivel.known[i]:
-        known = known_families(block.swivel, i, limits, q)
-        if known is not None:
-            return known
+    known = block.families(i)
+    if known is not None:
+        return known
     T, size = block.T[i], analysis.size
-    known = block.every[0][block.every[1] == i]
-    seeds = np.concatenate([q, seeds_of(analysis, T, known, limits, request.middle)])
+    listed = block.every[0][block.every[1] == i]
+    seeds = np.concatenate([q, seeds_of(analysis, T, listed, limits, request.middle)])
     sets = families(analysis.chain, T[None], seeds, size, limits=limits)
     curves = sets.curves[0]
     _, crossing = crossings(curves, analysis.chain, np.broadcast_to(T, (len(curves), 4, 4)), size)

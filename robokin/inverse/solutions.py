@@ -29,7 +29,7 @@ class Solution(Brief):
     within_limits: bool
     position_error: float
     angle_error: float
-    free: tuple[int, ...] = ()
+    free: tuple[int, ...] = field(default_factory=tuple)
 
     def __getstate__(self) -> dict[str, Any]:
         """The fields, for copies and pickles."""
@@ -38,25 +38,35 @@ class Solution(Brief):
     if not TYPE_CHECKING:  # who reads the types knows the fields alone
 
         def __getattr__(self, name: str) -> Any:
-            """The branch, where it is not worked out yet."""
+            """The branch or the free joints, where they are not worked out yet."""
             known = self.__dict__
-            find = known.get("_name")
-            if find is not None and name == "branch":
-                known["branch"] = find()
-                known.pop("_name", None)
+            find = known.get(LATER.get(name))
+            if find is not None:
+                known[name] = find()
+                known.pop(LATER[name], None)
             if name in known:  # found here, or meanwhile by another thread
                 return known[name]
             raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'", name=name, obj=self)
 
 
+LATER = {"branch": "_name", "free": "_free"}
+"""Where a solution keeps what finds a field that is not worked out yet."""
+
+
 def named_later(
-    name: Callable[[], str], q: Array, within_limits: bool, position: float, angle: float, free: tuple[int, ...]
+    name: Callable[[], str],
+    q: Array,
+    within_limits: bool,
+    position: float,
+    angle: float,
+    free: tuple[int, ...] | Callable[[], tuple[int, ...]],
 ) -> Solution:
-    """A solution whose branch is worked out when it is first asked for."""
+    """A solution whose branch is found when it is first asked for, and its free joints if a function finds them."""
     one = object.__new__(Solution)
     known = one.__dict__
-    known["q"], known["within_limits"], known["free"], known["_name"] = q, within_limits, free, name
+    known["q"], known["within_limits"], known["_name"] = q, within_limits, name
     known["position_error"], known["angle_error"] = position, angle
+    known["_free" if callable(free) else "free"] = free
     return one
 
 
@@ -158,9 +168,27 @@ class Result(Answer):
     basis: str | None = None
     certificate: str = ""
     all_known: bool = False
-    families: tuple[Family, ...] = ()
+    families: tuple[Family, ...] = field(default_factory=tuple)
     question: Question | None = None
-    families_complete: bool = False
+    families_complete: bool = field(default_factory=bool)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields, and what finds self-motions that are not worked out yet, for copies and pickles."""
+        return dict(self.__dict__)
+
+    if not TYPE_CHECKING:  # who reads the types knows the fields alone
+
+        def __getattr__(self, name: str) -> Any:
+            """The self-motions, where they are not worked out yet."""
+            known = self.__dict__
+            find = known.get("_alone")
+            if find is not None and name in ("families", "families_complete"):
+                alone = find()
+                known["families"], known["families_complete"] = alone.families, alone.families_complete
+                known.pop("_alone", None)
+            if name in known:  # found here, or meanwhile by another thread
+                return known[name]
+            raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'", name=name, obj=self)
 
     @property
     def reachable(self) -> bool:
@@ -193,6 +221,14 @@ class Result(Answer):
 
 FIELDS = frozenset(part.name for part in fields(Result))
 """What is asked of a result."""
+
+
+def with_later_families(result: Result, alone: Callable[[], Result]) -> Result:
+    """A result whose self-motions are those of the answer for its target alone, found when they are first asked for."""
+    known = {name: value for name, value in vars(result).items() if name not in ("families", "families_complete")}
+    one = object.__new__(Result)
+    one.__dict__.update(known, _alone=alone)
+    return one
 
 
 class UnmadeResult(Result):
@@ -245,6 +281,8 @@ class BatchResult(Answer):
     reason: Callable[[int], str | None]
     """Says why a target has no solution."""
     question: Question | None = None
+    alone: Callable[[int], Result] | None = None
+    """Answers one target by itself, of arms whose self-motions are looked for when they are asked for."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled with the answers for all targets, which are made for it."""
@@ -252,7 +290,7 @@ class BatchResult(Answer):
         reasons = [None if self.count[i] else self.reason(i) for i in range(len(self))]
         arrays = (self.q, self.count, self.position_error, self.angle_error, self.within_limits)
         made: tuple[Any, ...] = (partial(_at, answers), partial(list, self.branches()), partial(_at, reasons))
-        return type(self), (*arrays, self.complete, self.method, *made, self.question)
+        return type(self), (*arrays, self.complete, self.method, *made, self.question, self.alone)
 
     def __len__(self) -> int:
         """The number of targets."""
@@ -269,7 +307,8 @@ class BatchResult(Answer):
         result = self.single(number)
         if self.question is None:
             return result
-        return replace(result, question=replace(self.question, T=self.question.T[number]))
+        result = replace(result, question=replace(self.question, T=self.question.T[number]))
+        return result if self.alone is None else with_later_families(result, partial(self.alone, number))
 
     def __iter__(self) -> Iterator[Result]:
         """The answers in the order of the targets."""

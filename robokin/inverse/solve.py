@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,6 +22,7 @@ from robokin.inverse.one_answer import OneAnswer
 from robokin.inverse.one_target import plain_pose, solve_one
 from robokin.inverse.one_target_arm import one_target_arm
 from robokin.inverse.solutions import BatchResult, Question, Result, UnmadeResult
+from robokin.inverse.swivel_block import SwivelSolution, one_swivel_arm, solve_swivel
 from robokin.inverse.target_block import Method, Request
 from robokin.jobs.ordered_map import MOST_CORES
 from robokin.kernel.native_kernel import native
@@ -72,6 +74,10 @@ def solve_ik(
     targets = poses.reshape(-1, 4, 4)
     batch = solve_many(robot, targets, limits, near, method, task, most, seed, turns, hold, alone, cores)
     batch = replace(batch, question=Question(robot, targets, task, bool(limits), dict(hold or {})))
+    if not alone and _follows(robot, method, task, hold):
+        asked = {"limits": limits, "near": near, "method": method, "task": task, "most": most, "seed": seed}
+        asked |= {"turns": turns, "hold": hold}
+        batch = replace(batch, alone=partial(_alone, robot, targets, asked))
     return UnmadeResult(partial(batch.__getitem__, 0)) if alone else batch
 
 
@@ -99,6 +105,10 @@ def _one_target(
         if arm is not None and (arm.kernel is not None or plain_pose(T)):
             answer = solve_one(arm, T, limits, most)
             return None if answer is None else UnmadeResult(partial(_made, robot, None, answer, {}))
+        swivel = one_swivel_arm(robot) if arm is None and limits else None
+        if swivel is not None and plain_pose(T):
+            known = solve_swivel(swivel, T, most)
+            return None if known is None else UnmadeResult(partial(_made_of_motions, known, method, most, seed))
         return None
     if not plain_pose(T) or isinstance(robot, CoupledRobot) or not (hold is None or isinstance(hold, Mapping)):
         return None
@@ -118,6 +128,31 @@ def _made(robot: Robot, part: HeldArm | None, answer: OneAnswer, hold: dict[int,
     """The result of an answer, when it is looked at."""
     question = Question(robot, answer.T, "pose", answer.limits, hold)
     return answer.result(question) if part is None else whole_result(robot, part, answer.result, question)
+
+
+def _made_of_motions(known: SwivelSolution, method: Method, most: int | None, seed: int) -> Result:
+    """The result of an answer with self-motions, when it is looked at."""
+    robot, T = known.known.robot, known.T
+    question = Question(robot, T, "pose", True, {})
+    result = known.result(question)
+    if result is None:
+        batch = solve_many(robot, T[None], True, None, method, "pose", most, seed, motions=True)
+        result = replace(batch[0], question=question)
+    return result
+
+
+def _alone(robot: Robot, T: Array, arguments: dict[str, Any], i: int) -> Result:
+    """The answer for one target of a batch T (m, 4, 4) [m], with its self-motions."""
+    answer: Result = solve_many(robot, T[i : i + 1], motions=True, **arguments)[0]
+    return answer
+
+
+def _follows(robot: Robot, method: Method, task: Task, hold: Mapping[int, float] | None) -> bool:
+    """Whether the self-motions of an arm are looked for only when they are asked for: those of one joint to spare."""
+    arm = held_arm(robot, hold).part if hold else robot
+    if isinstance(arm, CoupledRobot):
+        arm = arm.free_motion
+    return method != "numeric" and arm.n > 0 and analysis_of(arm, task).redundancy == 1
 
 
 def solve_many(

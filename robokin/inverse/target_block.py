@@ -12,7 +12,7 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis
 from robokin.inverse.claims import unclaimed
-from robokin.inverse.known_motions import known_motions, with_known
+from robokin.inverse.known_motions import known_families, known_motions, with_known
 from robokin.inverse.numeric.closest import TOGETHER, beyond_reach, nearest_configurations
 from robokin.inverse.numeric.closing import closing_nearest
 from robokin.inverse.numeric.least_squares import descend
@@ -25,7 +25,7 @@ from robokin.inverse.self_motion.redundant import MOST_SOUGHT, UNPROVEN, supplem
 from robokin.inverse.self_motion.spread import well_spread
 from robokin.inverse.self_motion.swivel_members import SwivelAnswers
 from robokin.inverse.solution_names import branch_names, listed_names
-from robokin.inverse.solutions import Arc
+from robokin.inverse.solutions import Arc, Family
 from robokin.inverse.solve_blocks import solve_block, turned_in_the_open
 from robokin.inverse.verify import CLOSES, Found, distinct, merged, nothing, with_ones_within, within_limits, wrapped
 from robokin.kernel.residual import distance_and_angle, error_and_jacobian
@@ -243,6 +243,16 @@ class TargetBlock:
                     own = {int(moving[k - 1]) + 1 for k in motion.curve.joints if k <= len(moving)}
                     free[rows[row]] = tuple(sorted({*idle, *own}))
         return free
+
+    def in_closed_form(self, i: int) -> bool:
+        """Whether the self-motions of target i are known as intervals of the swivel angle."""
+        return self.swivel is not None and bool(self.swivel.known[i])
+
+    def families(self, i: int) -> tuple[Family, ...] | None:
+        """The self-motions of target i where all are known in closed form, None elsewhere."""
+        if self.swivel is None or not self.swivel.known[i]:
+            return None
+        return known_families(self.swivel, i, self.request.own_limits, self.found.q[self.found.index == i])
 
     def outside(self, i: int) -> str:
         """Why target i, which has solutions but for the limits, has none: proven or not."""

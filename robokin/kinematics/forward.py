@@ -16,6 +16,7 @@ from robokin.kernel.facts import fact
 from robokin.kernel.frames import fill_poses, frames, pose, program_to_tool, run
 from robokin.kernel.native_kernel import native
 from robokin.kernel.straight_line import Straight, straight_frame
+from robokin.kinematics.at_once import ALONE, keep_at_once, pose_at_once
 from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.model.named_values import plain_joint_values
 from robokin.spatial import exact
@@ -42,8 +43,13 @@ def forward_kinematics(robot: Robot, q: ArrayLike, cores: int | None = 1) -> Arr
     Source: J. Denavit and R. S. Hartenberg, A kinematic notation for lower-pair mechanisms based on matrices,
     J. Applied Mechanics 22, 1955; modified tables as J. J. Craig, Introduction to Robotics, 1986, has them.
     """
+    if cores is ALONE:
+        T: Array | None = pose_at_once(robot, q)
+        if T is not None:
+            return T
     q, moving = joint_motions(robot, q)
     cores = threads_wanted(cores)
+    keep_at_once(robot)
     if cores == 1 and native is None and q.ndim == 1:
         one = _one_pose(moving)
         if one is not None:

@@ -17,8 +17,12 @@ from robokin.kernel.geometric_jacobian import fill_jacobians
 from robokin.kernel.geometric_jacobian import jacobian as chain_jacobian
 from robokin.kernel.native_kernel import native
 from robokin.kernel.straight_line import Straight, straight_jacobian
+from robokin.kinematics.at_once import ALONE, jacobian_at_once, keep_at_once
 from robokin.kinematics.forward import SHARE, joint_motions, threads_wanted
 from robokin.model import CoupledRobot, Robot
+
+BASE = "base"
+"""The axes of a plain call."""
 
 
 def jacobian(robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base", cores: int | None = 1) -> Array:
@@ -31,10 +35,15 @@ def jacobian(robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base"
     Raises InputError when q has another length than n, for another frame, and for less than one core.
     Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, eq. (3.30).
     """
+    if cores is ALONE and frame is BASE:
+        known: Array | None = jacobian_at_once(robot, q)
+        if known is not None:
+            return known
     if type(frame) is not str or frame != "base":
         expect_choice(frame, ("base", "tool"), "frame")
     q, moving = joint_motions(robot, q)
     cores = threads_wanted(cores)
+    keep_at_once(robot)
     J = _at_one(moving, q, frame) if native is None and q.ndim == 1 else None
     if J is None and cores == 1:
         J = chain_jacobian(chain_of(moving), q, frame)

@@ -98,8 +98,8 @@ class SolutionReport(SharedStream):
 
     # The answers ------------------------------------------------------------------------------------------
 
-    def batches(self, blocks: Iterable[Array]) -> Iterator[tuple[Array, BatchResult]]:
-        """Each block (m, 4, 4) [m] with its answers."""
+    def batches(self, blocks: Iterable[Array], motions: bool = False) -> Iterator[tuple[Array, BatchResult]]:
+        """Each block (m, 4, 4) [m] with its answers; motions: whether with their self-motions, as for one target."""
         if self.following is not None:
             yield from self.following.batches(self.robot, blocks, self.arguments)
             return
@@ -107,11 +107,11 @@ class SolutionReport(SharedStream):
         for block in blocks:
             for start in range(0, len(block), step or max(len(block), 1)):
                 T = block[start : start + step] if step else block
-                yield T, solve_many(self.robot, T, motions=self.alone, **self.arguments)
+                yield T, solve_many(self.robot, T, motions=self.alone or motions, **self.arguments)
 
-    def results(self, blocks: Iterable[Array]) -> Iterator[tuple[Array, Result]]:
-        """Each target (4, 4) [m] with its answer."""
-        for T, batch in self.batches(blocks):
+    def results(self, blocks: Iterable[Array], motions: bool = False) -> Iterator[tuple[Array, Result]]:
+        """Each target (4, 4) [m] with its answer; motions: as for `batches`."""
+        for T, batch in self.batches(blocks, motions):
             for target, result in zip(T, batch, strict=True):
                 result = self.accepted(target, result)
                 self.count += 1
@@ -124,7 +124,7 @@ class SolutionReport(SharedStream):
 
     def documents(self, blocks: Iterable[Array]) -> Iterator[Iterable[dict[str, Any]]]:
         """The document of each answer, as it comes."""
-        for target, result in self.results(blocks):
+        for target, result in self.results(blocks, motions=True):
             record = self.records.record(target, result)
             if self.following is not None:
                 record["jump"] = self.following.jumped

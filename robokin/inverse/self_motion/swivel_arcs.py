@@ -16,6 +16,7 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.swivel_curves import TURN, SwivelCurves
 from robokin.inverse.self_motion.swivel_pieces import SwivelPieces
+from robokin.inverse.verify import HALF_TURN
 from robokin.model.robot import LIMIT_TOLERANCE
 
 FINE = np.radians(1.0)
@@ -77,7 +78,8 @@ def _turned_into(q: Array, starts: Index, of: Index, limits: Array) -> tuple[lis
         fewest = np.ceil((low - LIMIT_TOLERANCE - least) / TURN)
         greatest = np.floor((high + LIMIT_TOLERANCE - most) / TURN)
     fits = np.all(fewest <= greatest, axis=1)
-    wish = -np.round(0.5 * (least + most) / TURN)
+    # -180° is 180°, whatever the last digits say.
+    wish = -np.ceil(0.5 * (least + most) / TURN - 0.5 - HALF_TURN)
     turns = np.where(fits[:, None], np.clip(wish, fewest, np.maximum(greatest, fewest)), wish)
     q = q + TURN * turns[of]
     near = np.clip(q, low, high)

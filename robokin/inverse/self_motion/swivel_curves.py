@@ -24,6 +24,7 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.swivel_arm import SwivelArm, Triples
+from robokin.inverse.verify import HALF_TURN
 from robokin.kernel.frames import frames
 
 TURN = 2.0 * np.pi
@@ -111,6 +112,7 @@ class SwivelCurves:
         q[:, :3], q[:, 3], q[:, 4:] = turns[0, 0].T, self.q4[row, elbow], turns[1, 0].T
         q -= self.arm.chain.offsets
         q -= TURN * np.round(q / TURN)
+        q[q < HALF_TURN - np.pi] += TURN  # -180° is 180°, whatever the last digits say
         return q
 
     def swivel(self, row: Index, elbow: Index, q: Array) -> Array:

@@ -28,6 +28,9 @@ two of different counts then stand at one place."""
 APART = 10.0 * SAME
 """Least distance of ψ between two of them: some joint moves by a third of it at least."""
 
+ROUNDS_UP = 0.5 + 1e-6
+"""What makes the next whole number of a part that is below it: of pieces of one length no last digit decides."""
+
 BRACKETS = 24
 """Places on a piece at which the distance from a wish is looked at."""
 
@@ -104,7 +107,8 @@ def _spread(pieces: SwivelPieces, count: int) -> tuple[Index, Array]:
     """Some `count` places for each pose at equal distances on its pieces, one at least on each: which piece, ψ."""
     length = pieces.last - pieces.first
     total = np.bincount(pieces.row, length, minlength=1)[pieces.row]
-    many = np.clip(np.rint(count * length / np.maximum(total, APART)), 1, np.maximum(length / APART, 1)).astype(np.intp)
+    many = np.floor(count * length / np.maximum(total, APART) + ROUNDS_UP)
+    many = np.clip(many, 1, np.maximum(length / APART, 1)).astype(np.intp)
     of = np.repeat(np.arange(len(length)), many)
     rank = np.arange(len(of)) - np.repeat(np.cumsum(many) - many, many)
     return of, pieces.first[of] + (rank + 0.5) * (length / many)[of]

@@ -195,10 +195,16 @@ static void moved(const Chain *chain, int i, Frame *F, double s[][LANES], double
     go_on(F, &chain->links[i]);
 }
 
+#include "one_row.h"
+
 /* Poses of the tool (m, 4, 4) at q (m, n). */
 void NAMED(poses)(const Chain *chain, const double *q, ptrdiff_t m, double *out) {
     double s[MOST_JOINTS][LANES], c[MOST_JOINTS][LANES];
     Frame F;
+    if (m == 1) {
+        row_pose(chain, q, out);
+        return;
+    }
     for (ptrdiff_t first = 0; first < m; first += LANES) {
         ptrdiff_t count = m - first < LANES ? m - first : LANES;
         prepared(chain, q + first * chain->n, count, s, c);
@@ -267,6 +273,10 @@ void NAMED(jacobians)(const Chain *chain, const double *q, ptrdiff_t m, double s
     double axes[MOST_JOINTS][6][LANES], J[6][LANES], R[6][LANES];
     Frame F;
     int n = chain->n;
+    if (m == 1 && size == 1.0 && !tool) {
+        row_jacobian(chain, q, out);
+        return;
+    }
     for (ptrdiff_t first = 0; first < m; first += LANES) {
         ptrdiff_t count = m - first < LANES ? m - first : LANES;
         followed(chain, q + first * n, count, axes, &F);

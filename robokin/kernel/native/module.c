@@ -14,7 +14,10 @@
 #include <string.h>
 
 /* As robokin.kernel.native_module expects it. */
-#define INTERFACE 5
+#define INTERFACE 7
+
+/* Under which name a robot's facts hold its chain. */
+#define KEPT_CHAIN "chain at once"
 
 /* numpy has no more, whatever its version. */
 #define MOST_DIMENSIONS 64
@@ -281,6 +284,87 @@ end:
     return both;
 }
 
+/* The chain that is kept with a robot (`at_once.py`), borrowed; NULL, without an error, for what has none. */
+static const Chain *kept(PyObject *robot) {
+    static PyObject *facts_name = NULL, *key = NULL;
+    const Chain *known = NULL;
+    if (!key && (!(facts_name = PyUnicode_InternFromString("_facts")) ||
+                 !(key = PyUnicode_InternFromString(KEPT_CHAIN)))) {
+        PyErr_Clear();
+        return NULL;
+    }
+    PyObject *facts = PyObject_GetAttr(robot, facts_name);
+    if (facts && PyDict_Check(facts)) {
+        PyObject *capsule = PyDict_GetItemWithError(facts, key);
+        if (capsule)
+            known = PyCapsule_GetPointer(capsule, CHAIN);
+    }
+    /* The robot keeps its facts, and they the chain. */
+    Py_XDECREF(facts);
+    if (!known)
+        PyErr_Clear();
+    return known;
+}
+
+/* The joint values of a plain call: those of an array, or of a list of floats, which are put into `row`; NULL for what
+   Python is to look at. `m` rows. */
+static const double *plain_values(const Chain *chain, PyObject *object, double *row, npy_intp *m) {
+    *m = 1;
+    if (PyArray_CheckExact(object)) {
+        PyArrayObject *q = (PyArrayObject *)object;
+        int last = PyArray_NDIM(q) - 1;
+        if (last < 0 || PyArray_TYPE(q) != NPY_DOUBLE || PyArray_DIM(q, last) != chain->n ||
+            !PyArray_ISCARRAY_RO(q))
+            return NULL;
+        *m = rows(q);
+        return PyArray_DATA(q);
+    }
+    if (!PyList_CheckExact(object) || PyList_Size(object) != chain->n)
+        return NULL;
+    for (int i = 0; i < chain->n; i++) {
+        PyObject *number = PyList_GetItem(object, i);
+        if (!PyFloat_CheckExact(number))
+            return NULL;
+        row[i] = PyFloat_AsDouble(number);
+    }
+    return row;
+}
+
+/* The empty answer of a plain call: q's leading shape, or none of a list, and `more` dimensions. */
+static PyObject *plain_answer(PyObject *object, const double *q, const double *row, int more, const npy_intp *shape) {
+    return q == row ? PyArray_EMPTY(more, shape, NPY_DOUBLE, 0) : empty((PyArrayObject *)object, more, shape);
+}
+
+static PyObject *pose_at_once(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    double row[MOST_JOINTS];
+    npy_intp m;
+    (void)self;
+    const Chain *known = count == 2 && PyArray_API ? kept(args[0]) : NULL;
+    const double *q = known ? plain_values(known, args[1], row, &m) : NULL;
+    if (!q || m >= LONG)
+        Py_RETURN_NONE;
+    const npy_intp shape[] = {4, 4};
+    PyObject *out = plain_answer(args[1], q, row, 2, shape);
+    if (out)
+        lanes.poses(known, q, m, PyArray_DATA((PyArrayObject *)out));
+    return out;
+}
+
+static PyObject *jacobian_at_once(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    double row[MOST_JOINTS];
+    npy_intp m;
+    (void)self;
+    const Chain *known = count == 2 && PyArray_API ? kept(args[0]) : NULL;
+    const double *q = known ? plain_values(known, args[1], row, &m) : NULL;
+    if (!q || m >= LONG)
+        Py_RETURN_NONE;
+    const npy_intp shape[] = {6, known->n};
+    PyObject *out = plain_answer(args[1], q, row, 2, shape);
+    if (out)
+        lanes.jacobians(known, q, m, 1.0, 0, PyArray_DATA((PyArrayObject *)out));
+    return out;
+}
+
 /* `count` numbers of a tuple of floats; 0 and an error for anything else. */
 static int numbers(PyObject *tuple, Py_ssize_t count, double *out) {
     if (!PyTuple_CheckExact(tuple) || PyTuple_Size(tuple) != count) {
@@ -380,6 +464,9 @@ static PyMethodDef methods[] = {
     {"with_arrays", (PyCFunction)(void (*)(void))with_arrays, METH_FASTCALL, "with_arrays(): numpy is there from now on"},
     {"plain_chain", (PyCFunction)(void (*)(void))plain_chain, METH_FASTCALL, "plain_chain(constants, revolute, offsets)"},
     {"plain_pose", (PyCFunction)(void (*)(void))plain_pose, METH_FASTCALL, "plain_pose(chain, q): twelve numbers"},
+    {"pose_at_once", (PyCFunction)(void (*)(void))pose_at_once, METH_FASTCALL, "pose_at_once(robot, q), or None"},
+    {"jacobian_at_once", (PyCFunction)(void (*)(void))jacobian_at_once, METH_FASTCALL,
+     "jacobian_at_once(robot, q), or None"},
     {"errors", (PyCFunction)(void (*)(void))errors, METH_FASTCALL, "errors(chain, T, q, size): (..., 6), (..., 6, n)"},
     {NULL, NULL, 0, NULL},
 };
@@ -390,6 +477,7 @@ static PyMethodDef *const more_methods[] = {
     descent_methods,
     elimination_methods,
     number_text_methods,
+    swivel_methods,
     NULL,
 };
 

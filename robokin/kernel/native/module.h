@@ -48,7 +48,8 @@ typedef struct {
 } Lanes;
 
 /* Methods of the other files. */
-extern PyMethodDef closed_form_methods[], descent_methods[], elimination_methods[], number_text_methods[];
+extern PyMethodDef closed_form_methods[], descent_methods[], elimination_methods[], number_text_methods[],
+    swivel_methods[];
 
 /* The set in use. */
 extern Lanes lanes;

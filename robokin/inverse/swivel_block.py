@@ -1,0 +1,225 @@
+"""Targets of arms with a spherical shoulder and wrist that the native kernel answers, one and many.
+
+Statement. Give the solutions that are listed of a target, and its self-motions as intervals of the swivel angle, as
+`TargetBlock` gives them with `known_motions`, in a fiftieth of the time.
+Derivation. The kernel follows the same steps (`native_swivel`); objects are made of its numbers for those that ask.
+Degenerate case. What the steps doubt, and targets with nothing within the limits, are left to the blocks. So is a wish,
+a list without regard to limits, and one of more than `MOST_LISTED`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property, partial
+
+import numpy as np
+
+from robokin.arrays import Array, Flags, Index
+from robokin.inverse.analysis import Analysis, analysis_of
+from robokin.inverse.claims import Claims
+from robokin.inverse.full_turns import count_equivalents, turning
+from robokin.inverse.known_motions import ALL_MOTIONS, turns_on
+from robokin.inverse.numeric.nearest import free_at
+from robokin.inverse.self_motion.native_swivel import MOST_LISTED, native_swivel
+from robokin.inverse.self_motion.swivel_arcs import swivel_arcs
+from robokin.inverse.self_motion.swivel_arm import SwivelArm, swivel_arm
+from robokin.inverse.self_motion.swivel_curves import swivel_curves
+from robokin.inverse.self_motion.swivel_pieces import SwivelPieces
+from robokin.inverse.solution_names import branch_names
+from robokin.inverse.solutions import Family, Question, Result, arc_later, named_later
+from robokin.inverse.target_block import MOST, Request, TargetBlock
+from robokin.inverse.verify import Found
+from robokin.kernel.facts import fact
+from robokin.kernel.native_kernel import native
+from robokin.model import Robot
+from robokin.model.robot import LIMIT_TOLERANCE
+from robokin.spatial.angles import TURN
+
+SIGNS = np.array([[code >> 2, code >> 1 & 1, code & 1] for code in range(8)])
+"""The places of a curve's signs of elbow, shoulder and wrist, by its number in the kernel."""
+
+MOVING = [tuple(i + 1 for i in range(7) if bits >> i & 1) for bits in range(128)]
+"""Joints, from 1, by bits."""
+
+
+@dataclass(frozen=True, eq=False)
+class OneSwivelArm:
+    """A robot with what the kernel knows it by.
+
+    wide: whether intervals may not tell how a joint turns on; turned: whether full turns may be within the limits.
+    """
+
+    robot: Robot
+    analysis: Analysis
+    arm: SwivelArm
+    kernel: object
+    wide: bool
+    turned: bool
+
+
+@fact
+def one_swivel_arm(robot: Robot) -> OneSwivelArm | None:
+    """What is known of a robot; None for one that blocks are left to solve."""
+    if native is None or type(robot) is not Robot or robot.n != 7:
+        return None
+    analysis = analysis_of(robot)
+    arm = None if analysis.open or analysis.redundancy != 1 or analysis.idle else swivel_arm(analysis.chain)
+    if arm is None or analysis.solver is None:
+        return None
+    request = Request(robot, analysis, True, None, "auto", None, 0)
+    limits = request.own_limits
+    kernel = native_swivel(arm, limits, request.middle) if np.array_equal(limits, robot.limits) else None
+    if kernel is None:
+        return None
+    turned = any(np.ptp(limits[i]) + 4.0 * LIMIT_TOLERANCE >= TURN for i in turning(robot))
+    return OneSwivelArm(robot, analysis, arm, kernel, turns_on(limits), turned)
+
+
+def swivel_request(request: Request) -> OneSwivelArm | None:
+    """What the kernel knows the arm of a request by; None where blocks are to answer."""
+    if request.method == "numeric" or not request.limits or request.near is not None:
+        return None
+    if request.most is not None and request.most > MOST_LISTED:
+        return None
+    known = one_swivel_arm(request.robot)
+    return None if known is None or known.analysis is not request.analysis else known
+
+
+class SwivelBlock(TargetBlock):
+    """The answers of the native kernel for those targets of a block that it answers.
+
+    plain: (m,) which of the given ones these are; tables: (k, r, 7), (k, r), (k, r) what is listed of each: joint
+    values, distances, angles (NaN where there are fewer solutions).
+    """
+
+    def __init__(self, request: Request, T: Array) -> None:
+        """Answer what is plain of targets T (m, 4, 4) [m]; the others are no part of this block."""
+        known = swivel_request(request)
+        assert native is not None
+        assert known is not None
+        most = MOST if request.most is None else request.most
+        self.plain, *tables = native.swivel_solutions(known.kernel, T, most)
+        if not self.plain.all():
+            T, tables = T[self.plain], [table[self.plain] for table in tables]
+        self.closing, self.within, self.count, *self.tables = tables
+        self.request, self.T, self.swivel = request, T, None
+        self._nearest, self._arcs = {}, {}
+        none = np.zeros(len(T), dtype=np.intp)
+        self.claims = Claims(none.astype(np.int8), None, none, otherwise=ALL_MOTIONS)
+        self.cut = self.within > self.count
+
+    @cached_property
+    def found(self) -> Found:  # type: ignore[override]
+        """What is listed, target after target."""
+        listed = np.arange(self.tables[1].shape[1]) < self.count[:, None]
+        return Found(np.repeat(np.arange(len(self.T)), self.count), *(table[listed] for table in self.tables))
+
+    @cached_property
+    def inside(self) -> Flags:  # type: ignore[override]
+        """Which of these are within the limits: all."""
+        return np.ones(len(self.found), dtype=bool)
+
+    @cached_property
+    def every(self) -> tuple[Array, Index]:  # type: ignore[override]
+        """All solutions that were put on the self-motions, and their targets."""
+        return TargetBlock(self.request, self.T).every
+
+    def in_closed_form(self, i: int) -> bool:
+        """Whether the self-motions of target i are known as intervals of the swivel angle: yes."""
+        return True
+
+    def families(self, i: int) -> tuple[Family, ...] | None:
+        """The self-motions of target i; None where intervals of the swivel angle do not tell."""
+        known = swivel_request(self.request)
+        assert native is not None
+        assert known is not None
+        table, pieces, moving, *_ = native.swivel_solution(known.kernel, self.T[i], self.tables[1].shape[1])
+        return swivel_families(known, self.T[i], table, pieces, moving)
+
+
+@dataclass(eq=False, slots=True)
+class SwivelSolution:
+    """The solutions for one target T (4, 4) [m].
+
+    table: (k, 10) a row for each that is listed: joint values [rad], what it lacks of the target [m, rad], the number
+    of its curve; pieces: (p, 4) curve, first and last ψ, whether it is all of the curve; moving: (8,) the joints, as
+    bits, that move along each; closing, within: how many were put on the self-motions and close, and are within limits.
+    """
+
+    known: OneSwivelArm
+    T: Array
+    table: Array
+    pieces: Array
+    moving: Index
+    closing: int
+    within: int
+
+    def result(self, question: Question) -> Result | None:
+        """The answer for a question; None where intervals of the swivel angle do not tell."""
+        families = swivel_families(self.known, self.T, self.table, self.pieces, self.moving)
+        if families is None:
+            return None
+        q, robot = self.table[:, :7].copy(), self.known.robot
+        errors = self.table[:, 7:9].tolist()
+        names = cache(partial(branch_names, robot, q, np.zeros(len(q), dtype=np.intp)))
+        free = cache(partial(free_at, self.known.analysis, q))
+        solutions = tuple([
+            named_later(partial(_at, names, k), q[k], True, *errors[k], partial(_at, free, k)) for k in range(len(q))
+        ])  # fmt: skip
+        counts = {"closing": self.closing, "within_limits": self.within, "listed": len(q)}
+        counts["turns"] = sum(count_equivalents(robot, q)) if self.known.turned else len(q)
+        return Result(
+            solutions, False, self.known.analysis.method, counts=counts, certificate=ALL_MOTIONS, families=families,
+            question=question, families_complete=True,
+        )  # fmt: skip
+
+
+def _at(find: object, k: int) -> object:
+    return find()[k]  # type: ignore[operator]
+
+
+def solve_swivel(known: OneSwivelArm, T: Array, most: int | None) -> SwivelSolution | None:
+    """The answer for a rigid target T (4, 4) [m] within the limits, or None where it is left to the blocks."""
+    assert native is not None
+    if most is not None and most > MOST_LISTED:
+        return None
+    T = np.array(T)
+    found = native.swivel_solution(known.kernel, T, MOST if most is None else most)
+    return None if found is None else SwivelSolution(known, T, *found)
+
+
+def swivel_families(
+    known: OneSwivelArm, T: Array, table: Array, pieces: Array, moving: Index
+) -> tuple[Family, ...] | None:
+    """The self-motions of a target T (4, 4) [m] by the kernel's numbers, as `known_families` has them.
+
+    None where a joint turns on beyond its limits in a way that intervals of the swivel angle do not tell.
+    """
+    arcs = cache(partial(_arcs, known, T, pieces))
+    if known.wide and not arcs()[1]:
+        return None
+    rows, bits = pieces.tolist(), moving.tolist()
+    own: dict[float, list[int]] = {}
+    for k, row in enumerate(rows):
+        own.setdefault(row[0], []).append(k)
+    listed = table[:, 9].tolist()
+    first = {code: k for k, code in reversed([*enumerate(listed)])}
+    families = []
+    for code in sorted(own, key=lambda code: first.get(code, len(listed))):
+        parts = [arc_later(partial(_one, arcs, k), rows[k][3] != 0.0, (rows[k][1], rows[k][2])) for k in own[code]]
+        families.append(Family(MOVING[bits[int(code)]], 1, True, tuple(parts), first.get(code, -1)))
+    return tuple(families)
+
+
+def _one(arcs: object, k: int) -> Array:
+    q: Array = arcs()[0][k]  # type: ignore[operator]
+    return q
+
+
+def _arcs(known: OneSwivelArm, T: Array, pieces: Array) -> tuple[list[Array], bool]:
+    """The configurations along pieces (p, 4), and whether full turns bring all into the limits."""
+    count = len(pieces)
+    row, signs = np.zeros(count, dtype=np.intp), SIGNS[pieces[:, 0].astype(np.intp)]
+    some = SwivelPieces(row, signs, pieces[:, 1], pieces[:, 2], pieces[:, 3] != 0.0, np.zeros(1, dtype=bool))
+    found, fits = swivel_arcs(swivel_curves(known.arm, T[None]), some, np.arange(count), known.robot.limits)
+    return found, bool(fits.all())
