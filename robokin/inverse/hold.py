@@ -195,14 +195,14 @@ def _whole_result(arm: HeldArm, result: Result, named: Robot | None) -> Result:
         return _names(named, arm.whole(np.array([solution.q for solution in shown])))
 
     values = arm.whole(np.array([solution.q for solution in shown]).reshape(-1, len(arm.free)))
-    whole = [
-        named_later(
-            partial(_of, names, k), q, solution.within_limits and arm.inside, solution.position_error,
-            solution.angle_error, arm.numbers(solution.free) if solution.free else (),
-        )
-        for k, (q, solution) in enumerate(zip(values, shown, strict=True))
-    ]  # fmt: skip
-    solutions = tuple(whole[: len(result.solutions)])
+    whole = named_later(
+        partial(_of, names),
+        values,
+        [solution.within_limits and arm.inside for solution in shown],
+        [(solution.position_error, solution.angle_error) for solution in shown],
+        [arm.numbers(solution.free) if solution.free else () for solution in shown],
+    )
+    solutions = whole[: len(result.solutions)]
     nearest = whole[-1] if result.nearest is not None else None
     families = tuple(_whole_family(arm, family) for family in result.families)
     return replace(result, solutions=solutions, nearest=nearest, families=families)

@@ -20,7 +20,7 @@ from robokin.inverse.self_motion.swivel_arcs import swivel_arcs
 from robokin.inverse.self_motion.swivel_arm import swivel_arm
 from robokin.inverse.self_motion.swivel_curves import TURN, SwivelCurves
 from robokin.inverse.self_motion.swivel_members import SwivelAnswers, swivel_answers
-from robokin.inverse.self_motion.swivel_pieces import SwivelPieces
+from robokin.inverse.self_motion.swivel_pieces import WEIGHTS, SwivelPieces
 from robokin.inverse.solutions import Family, arc_later
 from robokin.inverse.verify import SAME, Found, merged
 from robokin.model.robot import LIMIT_TOLERANCE
@@ -91,7 +91,8 @@ def known_families(known: SwivelAnswers, i: int, limits: Array, listed: Array) -
     if turns_on(limits) and not arcs()[1]:
         return None
     signs = pieces.signs[chosen]
-    motions, of = np.unique(signs, axis=0, return_inverse=True)
+    _, first, of = np.unique(signs @ WEIGHTS[1:], return_index=True, return_inverse=True)
+    motions = signs[first]
     moving = _moving(curves, i, motions)
     stands = _standing(curves, i, motions, listed)
     families = []
@@ -99,7 +100,7 @@ def known_families(known: SwivelAnswers, i: int, limits: Array, listed: Array) -
         own = tuple(
             arc_later(partial(_one, arcs, k), bool(pieces.whole[piece]), _interval(pieces, piece))
             for k, piece in enumerate(chosen.tolist())
-            if of.reshape(-1)[k] == number
+            if of[k] == number
         )
         families.append(Family(moving[number], 1, True, own, int(stands[number])))
     return tuple(families)

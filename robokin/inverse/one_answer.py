@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -60,10 +59,9 @@ class OneAnswer:
         everything = table[:, :6]
         q = everything.copy() if len(rows) == len(values) and self.wish is None else everything.take(rows, axis=0)
         find = _Names(self.arm.robot, everything, rows).name
-        solutions = []
-        for k, row in enumerate(rows):
-            position, angle, inside = values[row][:3]
-            solutions.append(named_later(partial(find, k), q[k], inside != 0.0, position, angle, ()))
+        kept = [values[row] for row in rows]
+        inside, errors = [row[INSIDE] != 0.0 for row in kept], [(row[0], row[1]) for row in kept]
+        solutions = named_later(find, q, inside, errors, [()] * len(rows))
         count, analysis = len(values), self.arm.analysis
         complete = len(rows) == within
         counts = {"found": self.tried, "duplicates": 0, "closing": count}
@@ -74,7 +72,7 @@ class OneAnswer:
             told = table.shape[1] > 6 + TURNS
             counts["turns"] = sum([int(values[row][TURNS]) if told else self._equivalents(row) for row in rows])
         return Result(
-            tuple(solutions), complete, analysis.method, counts=counts, postures=complete,
+            solutions, complete, analysis.method, counts=counts, postures=complete,
             basis=BASES[COUNTED] if complete else None,
             certificate=counted_sentence(analysis.number, count, self.arm.form is not None), all_known=True,
             question=question, families_complete=True,

@@ -14,11 +14,13 @@ from functools import cached_property
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
+from robokin.inverse.analysis import Analysis
 from robokin.inverse.claims import COUNTED, Claims
 from robokin.inverse.one_target_arm import one_target_arm
 from robokin.inverse.target_block import Request, TargetBlock, in_order
 from robokin.inverse.verify import Found
 from robokin.kernel.native_kernel import native
+from robokin.model import Robot
 
 
 def kernel_form(request: Request) -> object | None:
@@ -30,6 +32,19 @@ def kernel_form(request: Request) -> object | None:
     if arm is None or arm.analysis is not request.analysis:
         return None
     return arm.kernel if near is None or request.limits or robot.within_limits(near) else None
+
+
+def quick_within(robot: Robot, analysis: Analysis, T: Array) -> tuple[Flags, Flags, Array] | None:
+    """What the native kernel's closed form of an arm answers at once of targets T (m, 4, 4) [m]; None without one.
+
+    (m,) which it answers, (m,) which of those are reached within the limits, and (m, n) [rad] the last such solution of
+    each, any number for others.
+    """
+    arm = None if native is None or analysis.open or analysis.redundancy else one_target_arm(robot)
+    if native is None or arm is None or arm.kernel is None or arm.form is None or arm.analysis is not analysis:
+        return None
+    plain, _, listed, q, *_ = native.solutions(arm.kernel, T, True, None)
+    return plain, plain & (listed > 0), q[np.arange(len(T)), np.maximum(listed - 1, 0)]
 
 
 class PlainBlock(TargetBlock):

@@ -31,9 +31,8 @@ def result_of(request: Request, block: TargetBlock, i: int) -> Result:
     analysis, found = request.analysis, block.found
     rows = slice(np.searchsorted(found.index, i), np.searchsorted(found.index, i, side="right"))
     q, position, angle = found.q[rows], found.position[rows].tolist(), found.angle[rows].tolist()
-    first, inside = int(rows.start), block.inside[rows].tolist()
-    names, free = ([partial(find, block, first + k) for k in range(len(q))] for find in (_name, _free))
-    solutions = tuple(map(named_later, names, q, inside, position, angle, free))
+    inside, errors = block.inside[rows].tolist(), zip(position, angle, strict=True)
+    solutions = named_later(partial(_name, block), q, inside, errors, partial(_free, block), int(rows.start))
     method = "numeric" if request.method == "numeric" else analysis.method
     sets = families_of(request, block, i, q)
     basis = bool(block.claims.basis[i])

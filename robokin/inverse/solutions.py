@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
@@ -40,9 +40,10 @@ class Solution(Brief):
         def __getattr__(self, name: str) -> Any:
             """The branch or the free joints, where they are not worked out yet."""
             known = self.__dict__
-            find = known.get(LATER.get(name))
-            if find is not None:
-                known[name] = find()
+            later = known.get(LATER.get(name))
+            if later is not None:
+                find, place = later
+                known[name] = find(place)
                 known.pop(LATER[name], None)
             if name in known:  # found here, or meanwhile by another thread
                 return known[name]
@@ -50,24 +51,39 @@ class Solution(Brief):
 
 
 LATER = {"branch": "_name", "free": "_free"}
-"""Where a solution keeps what finds a field that is not worked out yet."""
+"""Where a solution keeps what finds a field that is not worked out yet: a function, and what it is asked."""
 
 
 def named_later(
-    name: Callable[[], str],
+    name: Callable[[int], str],
     q: Array,
-    within_limits: bool,
-    position: float,
-    angle: float,
-    free: tuple[int, ...] | Callable[[], tuple[int, ...]],
-) -> Solution:
-    """A solution whose branch is found when it is first asked for, and its free joints if a function finds them."""
-    one = object.__new__(Solution)
-    known = one.__dict__
-    known["q"], known["within_limits"], known["_name"] = q, within_limits, name
-    known["position_error"], known["angle_error"] = position, angle
-    known["_free" if callable(free) else "free"] = free
-    return one
+    within_limits: Iterable[bool],
+    errors: Iterable[tuple[float, float]],
+    free: Iterable[tuple[int, ...]] | Callable[[int], tuple[int, ...]],
+    first: int = 0,
+) -> tuple[Solution, ...]:
+    """Solutions q (k, n) [rad | m] whose branches are found when they are first asked for.
+
+    errors: of each the distance and the angle [m, rad]; name: gives the branch of the one in a place, counted from
+    `first`, and `free`, if it is a function, its free joints.
+    """
+    made = []
+    known_free = None if callable(free) else iter(free)
+    new = object.__new__
+    for place, (one_q, inside, (position, angle)) in enumerate(zip(q, within_limits, errors, strict=True), first):
+        one = new(Solution)
+        known = one.__dict__
+        known["q"] = one_q
+        known["within_limits"] = inside
+        known["position_error"] = position
+        known["angle_error"] = angle
+        known["_name"] = (name, place)
+        if known_free is None:
+            known["_free"] = (free, place)
+        else:
+            known["free"] = next(known_free)
+        made.append(one)
+    return tuple(made)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

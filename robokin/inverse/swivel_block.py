@@ -160,12 +160,10 @@ class SwivelSolution:
         if families is None:
             return None
         q, robot = self.table[:, :7].copy(), self.known.robot
-        errors = self.table[:, 7:9].tolist()
         names = cache(partial(branch_names, robot, q, np.zeros(len(q), dtype=np.intp)))
         free = cache(partial(free_at, self.known.analysis, q))
-        solutions = tuple([
-            named_later(partial(_at, names, k), q[k], True, *errors[k], partial(_at, free, k)) for k in range(len(q))
-        ])  # fmt: skip
+        inside, errors = [True] * len(q), self.table[:, 7:9].tolist()
+        solutions = named_later(partial(_at, names), q, inside, errors, partial(_at, free))
         counts = {"closing": self.closing, "within_limits": self.within, "listed": len(q)}
         counts["turns"] = sum(count_equivalents(robot, q)) if self.known.turned else len(q)
         return Result(

@@ -6,7 +6,9 @@ grid's angles; of other orientations those of a grid are tried.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +18,7 @@ from robokin.brief import Brief
 from robokin.errors import InputError
 from robokin.inverse.analysis import Task
 from robokin.inverse.solve import solve_many
+from robokin.jobs.ordered_map import ordered_map
 from robokin.kinematics.forward import forward_kinematics
 from robokin.spatial import rotation_from_axis_angle, transform
 from robokin.workspace.attitudes import ALIKE, TASKS, Attitudes, Group, attitudes, group_of
@@ -60,6 +63,11 @@ def at_point(space: Space, point: ArrayLike, orientations: int | None = None, se
     """Whether point (3,) [m] can be reached, with which of some orientations, and with how many configurations."""
     place = _at_point(space, point, orientations, seed)
     return place if place.reachable else replace(place, proven=bool(proven_out(space, place.point)[0]))
+
+
+def at_points(space: Space, points: Array, seed: int = 0, cores: int | None = 1) -> Iterator[WorkspacePlace]:
+    """`at_point` of points (m, 3) [m], in their order, on so many cores or on a cluster that is lent."""
+    return ordered_map(partial(at_point, space, seed=seed), points, cores)
 
 
 def _at_point(space: Space, point: ArrayLike, orientations: int | None, seed: int) -> WorkspacePlace:

@@ -9,6 +9,7 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Task, analysis_of
 from robokin.inverse.numeric.closing import closing_nearest, exact_within
+from robokin.inverse.plain_targets import quick_within
 from robokin.inverse.solve_blocks import BLOCK, quick_block, solve_block
 from robokin.inverse.verify import Found, within_limits
 from robokin.jobs.ordered_map import ordered_map
@@ -55,14 +56,22 @@ def configurations(space: Space, task: Task, points: Array, rotations: Array) ->
     for start in range(0, len(points), BLOCK):
         part = slice(start, start + BLOCK)
         T = transform(rotations[part], points[part])
+        known = quick_within(robot, analysis, T) if space.gears is None else None
+        left = np.arange(start, start + len(T))
+        if known is not None:
+            plain, there, q = known
+            answers[left[there]], values[left[there]] = True, q[there]
+            T, left = T[~plain], left[~plain]
+            if not len(left):
+                continue
         found = quick_block(analysis, T, robot.limits, rest)
         if space.gears is not None:
             index, q = unwinding_of(space)(found.index, found.q)
             answers[start + index], values[start + index] = True, q
             continue
         q, inside = within_limits(found.q, robot.revolute, robot.limits, None)
-        answers[start + found.index[inside]] = True
-        values[start + found.index[inside]] = q[inside]
+        answers[left[found.index[inside]]] = True
+        values[left[found.index[inside]]] = q[inside]
     return answers, values
 
 

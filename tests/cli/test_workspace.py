@@ -369,3 +369,13 @@ def test_a_place_of_a_planar_arm_has_two_values(call):
     assert (flat.status, flat.err) == (0, "")
     assert flat.out == call("workspace", "planar3r", "--at", "1,0.5,0", "--json").out
     assert call("workspace", "puma560", "--at", "1,0.5").status == 2
+
+
+@pytest.mark.parametrize(
+    "way", [["--cores", "2"], pytest.param(["--cluster", "local:2"], marks=pytest.mark.slow)], ids=str
+)
+def test_places_are_the_same_whoever_works_at_them(call, way):
+    asked = ["workspace", "puma560", "--at", "500,100,300", "--at", "5000,0,0", "--at", "200,300,100", "--json"]
+    one, shared = call(*asked), call(*asked, *way)
+    assert one.status == shared.status == 3
+    assert one.out == shared.out

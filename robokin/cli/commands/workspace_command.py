@@ -126,7 +126,10 @@ def command(
         Destination(plot, "--plot")
     model, units = description.robot(robot)
     if at:
-        return _places(model, units, kind, at, arguments)
+        # To start processes takes as long as some places: only who asks for them gets them.
+        arguments["cores"] = 1 if cores is None and cluster is None else arguments["cores"]
+        with working_on(cluster):
+            return _places(model, units, kind, at, arguments)
     if output is not None:
         if format is not None or json:
             raise InputError("--output writes samples by the file's ending, expected no --format and no --json")
@@ -203,16 +206,17 @@ def _places(robot: Robot, units: Units, kind: str, at: list[str], arguments: dic
     from robokin.jobs.stages import stage
     from robokin.reports.workspace_report import places_written
     from robokin.tables.sink import sink
-    from robokin.workspace.place import at_point
+    from robokin.workspace.place import at_points
     from robokin.workspace.space import space_of
 
     points = [parse_place(text, "--at", robot, units) for text in at]
     space = space_of(robot)
     places = []
     with Stages():
-        for number, point in enumerate(points, start=1):
-            stage(f"place {number} of {len(points)}")
-            places.append(at_point(space, np.asarray(point), seed=arguments["seed"]))
+        answers = at_points(space, np.array(points), arguments["seed"], arguments["cores"])
+        for number in range(len(points)):
+            stage(f"place {number + 1} of {len(points)}")
+            places.append(next(answers))
     with sink(None) as stream:
         stream.writelines(places_written(places, robot, units, kind))
     return DONE if all(place.reachable for place in places) else NO
