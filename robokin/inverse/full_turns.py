@@ -67,11 +67,12 @@ def turns_of_limits(robot: Robot) -> int:
 def turn_ranges(robot: Robot, q: Array) -> tuple[Array, Array]:
     """The least and the greatest number of full turns (s, n) that leave each value of q: (s, n) within its limits."""
     least, most = np.zeros(q.shape), np.zeros(q.shape)
-    for i in turning(robot):
-        low, high = robot.limits[i] + [-LIMIT_TOLERANCE, LIMIT_TOLERANCE]
-        # A value outside the limits, which only the nearest configuration has, is its own only equivalent.
-        least[:, i] = np.minimum(np.ceil((low - q[:, i]) / TURN), 0.0)
-        most[:, i] = np.maximum(np.floor((high - q[:, i]) / TURN), 0.0)
+    which = turning(robot)
+    low, high = (robot.limits[which] + [-LIMIT_TOLERANCE, LIMIT_TOLERANCE]).T
+    values = q[:, which]
+    # A value outside the limits, which only the nearest configuration has, is its own only equivalent.
+    least[:, which] = np.minimum(np.ceil((low - values) / TURN), 0.0)
+    most[:, which] = np.maximum(np.floor((high - values) / TURN), 0.0)
     return least, most
 
 

@@ -18,6 +18,9 @@ from robokin.arrays import Array, Flags, Index
 CELLS = 2**15
 """Configurations at a time: the tables stay in cache."""
 
+FEW = 2**13
+"""Joint values in a table that is looked at as a whole."""
+
 DECIMALS = 7
 """Distances that agree to so many decimals [rad | size] are equal, and the first configuration is taken."""
 
@@ -61,15 +64,21 @@ def _chosen(
     distance = np.where(filled, np.inf, -np.inf)
     out = np.empty((len(filled), most), dtype=np.intp)
     target = np.arange(len(filled))
+    # Few configurations of turning joints at once, for which the calls take longer than the work.
+    together = bool(x.size <= FEW and revolute.all())
     pick = np.argmax(np.where(filled, preferred - np.round(move, DECIMALS), -np.inf), axis=1)
     for k in range(most):
         out[:, k] = np.where(distance[target, pick] > -np.inf, pick, -1)
-        gap = np.zeros(distance.shape)
-        for values, turns in zip(x, revolute, strict=True):
-            difference = np.abs(values - values[target, pick][:, None])
-            if turns:
-                difference = np.minimum(difference, 2.0 * np.pi - difference)
-            np.maximum(gap, difference, out=gap)
+        if together:
+            away = np.abs(x - x[:, target, pick][:, :, None])
+            gap = np.max(np.minimum(away, 2.0 * np.pi - away), axis=0)
+        else:
+            gap = np.zeros(distance.shape)
+            for values, turns in zip(x, revolute, strict=True):
+                difference = np.abs(values - values[target, pick][:, None])
+                if turns:
+                    difference = np.minimum(difference, 2.0 * np.pi - difference)
+                np.maximum(gap, difference, out=gap)
         np.minimum(distance, np.round(gap, DECIMALS), out=distance)
         distance[target, pick] = -np.inf
         pick = np.argmax(distance + preferred, axis=1)

@@ -24,6 +24,7 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.swivel_arm import SwivelArm
 from robokin.inverse.self_motion.swivel_curves import TURN, SwivelCurves
+from robokin.kernel.facts import fact
 from robokin.model.robot import LIMIT_TOLERANCE
 
 TRIPLES = np.array([[0, 1, 2], [4, 5, 6]])
@@ -80,7 +81,7 @@ class SwivelPieces:
 
 def swivel_pieces(curves: SwivelCurves, limits: Array) -> SwivelPieces:
     """The pieces within limits (7, 2) [rad]."""
-    bounds = SwivelBounds(curves.arm, limits)
+    bounds = _bounds(curves.arm, np.asarray(limits, dtype=np.float64).tobytes())
     parts: list[SwivelPieces] = []
     for start in range(0, len(curves.q4), AT_ONCE):
         parts.append(_pieces(curves.of(slice(start, start + AT_ONCE)), bounds))
@@ -93,6 +94,12 @@ def swivel_pieces(curves: SwivelCurves, limits: Array) -> SwivelPieces:
         for name in ("signs", "first", "last", "whole", "doubt")
     )
     return SwivelPieces(row, signs, first, last, whole, doubt)
+
+
+@fact
+def _bounds(arm: SwivelArm, limits: bytes) -> SwivelBounds:
+    """The equations of limits (7, 2) [rad], given by their bytes."""
+    return SwivelBounds(arm, np.frombuffer(limits).reshape(7, 2))
 
 
 class SwivelBounds:
