@@ -10,6 +10,7 @@ Degenerate case. No targets: no solutions, and nothing that is not complete.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -64,7 +65,7 @@ def answered_batch(request: Request, T: Array, cores: int | None) -> BatchResult
     return _batch(request, len(T), parts)
 
 
-def _native_kind(request: Request) -> type[PlainBlock | SwivelBlock] | None:
+def _native_kind(request: Request) -> Callable[[Request, Array], PlainBlock | SwivelBlock] | None:
     """The blocks of the native kernel that a request is for, if any."""
     if kernel_form(request) is not None:
         return PlainBlock

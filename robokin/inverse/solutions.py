@@ -297,8 +297,8 @@ class BatchResult(Answer):
     reason: Callable[[int], str | None]
     """Says why a target has no solution."""
     question: Question | None = None
-    alone: Callable[[int], Result] | None = None
-    """Answers one target by itself, of arms whose self-motions are looked for when they are asked for."""
+    alone: Callable[[Array], Result] | None = None
+    """Answers one target T (4, 4) [m] by itself, of arms whose self-motions are looked for when they are asked for."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled with the answers for all targets, which are made for it."""
@@ -323,8 +323,9 @@ class BatchResult(Answer):
         result = self.single(number)
         if self.question is None:
             return result
-        result = replace(result, question=replace(self.question, T=self.question.T[number]))
-        return result if self.alone is None else with_later_families(result, partial(self.alone, number))
+        T = self.question.T[number]
+        result = replace(result, question=replace(self.question, T=T))
+        return result if self.alone is None else with_later_families(result, partial(self.alone, T))
 
     def __iter__(self) -> Iterator[Result]:
         """The answers in the order of the targets."""

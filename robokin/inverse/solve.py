@@ -75,9 +75,11 @@ def solve_ik(
     batch = solve_many(robot, targets, limits, near, method, task, most, seed, turns, hold, alone, cores)
     batch = replace(batch, question=Question(robot, targets, task, bool(limits), dict(hold or {})))
     if not alone and _follows(robot, method, task, hold):
-        asked = {"limits": limits, "near": near, "method": method, "task": task, "most": most, "seed": seed}
-        asked |= {"turns": turns, "hold": hold}
-        batch = replace(batch, alone=partial(_alone, robot, targets, asked))
+        asked: dict[str, Any] = {
+            "limits": limits, "method": method, "task": task, "most": most, "seed": seed, "turns": turns,
+            "near": None if near is None else np.array(near), "hold": dict(hold or {}) or None,
+        }  # fmt: skip
+        batch = replace(batch, alone=partial(_alone, robot, asked))
     return UnmadeResult(partial(batch.__getitem__, 0)) if alone else batch
 
 
@@ -141,9 +143,9 @@ def _made_of_motions(known: SwivelSolution, method: Method, most: int | None, se
     return result
 
 
-def _alone(robot: Robot, T: Array, arguments: dict[str, Any], i: int) -> Result:
-    """The answer for one target of a batch T (m, 4, 4) [m], with its self-motions."""
-    answer: Result = solve_many(robot, T[i : i + 1], motions=True, **arguments)[0]
+def _alone(robot: Robot, arguments: dict[str, Any], T: Array) -> Result:
+    """The answer for one target T (4, 4) [m] of a batch, with its self-motions."""
+    answer: Result = solve_many(robot, T[None], motions=True, **arguments)[0]
     return answer
 
 

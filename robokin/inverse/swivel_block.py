@@ -9,8 +9,10 @@ a list without regard to limits, and one of more than `MOST_LISTED`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
+from typing import Any
 
 import numpy as np
 
@@ -172,8 +174,8 @@ class SwivelSolution:
         )  # fmt: skip
 
 
-def _at(find: object, k: int) -> object:
-    return find()[k]  # type: ignore[operator]
+def _at(find: Callable[[], list[Any]], k: int) -> Any:
+    return find()[k]
 
 
 def solve_swivel(known: OneSwivelArm, T: Array, most: int | None) -> SwivelSolution | None:
@@ -209,9 +211,8 @@ def swivel_families(
     return tuple(families)
 
 
-def _one(arcs: object, k: int) -> Array:
-    q: Array = arcs()[0][k]  # type: ignore[operator]
-    return q
+def _one(arcs: Callable[[], tuple[list[Array], bool]], k: int) -> Array:
+    return arcs()[0][k]
 
 
 def _arcs(known: OneSwivelArm, T: Array, pieces: Array) -> tuple[list[Array], bool]:
