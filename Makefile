@@ -101,11 +101,11 @@ $(VENV)-site/installed: .ci/requirements/user.txt .ci/requirements/build.txt .ci
 # What stands in this folder is served as playground/ of the site.
 PLAYGROUND ?= $(wildcard build/playground)
 site: $(VENV)-site/installed ## docs/ and a gallery of the library as a static site in build/site, its links looked at
-	$(VENV)-site/bin/python -m website $(if $(PLAYGROUND),--playground $(PLAYGROUND))
+	PYTHONPATH=docs $(VENV)-site/bin/python -m website $(if $(PLAYGROUND),--playground $(PLAYGROUND))
 
 # axe and a driver for the browser from npm, as the lock beside the check has them.
-build/site-check: website/accessibility/package-lock.json website/accessibility/check.mjs
-	mkdir -p $@ && cp website/accessibility/*.json website/accessibility/check.mjs $@
+build/site-check: docs/website/accessibility/package-lock.json docs/website/accessibility/check.mjs
+	mkdir -p $@ && cp docs/website/accessibility/*.json docs/website/accessibility/check.mjs $@
 	cd $@ && npm ci --silent --no-audit --no-fund
 	@touch $@
 

@@ -11,15 +11,15 @@ import pytest
 
 pytest.importorskip("PIL")
 from PIL import Image
+from website import docs_pages, gallery, links
+from website.entry_pages import commands, facts, page_text, plain, printed, write_entry, write_turning
+from website.thumbnails import HEIGHT, WIDTH, thumbnail
 
 from robokin import documents
 from robokin.formats.library import library_file, library_names, load_any
 from robokin.formats.library_index import library_entries
 from robokin.kinematics.forward import forward_kinematics
 from robokin.pictures.arm import default_configuration
-from website import docs_pages, gallery, links
-from website.entry_pages import commands, facts, page_text, plain, printed, write_entry, write_turning
-from website.thumbnails import HEIGHT, WIDTH, thumbnail
 
 KINDS = ["puma560", "scara-frames", "assembly", "human-hand", "four-bar", "gear-pair", "car", "omni-three"]
 """An arm, one in frames, one without joints, a tree, mechanisms with and without places, bases."""

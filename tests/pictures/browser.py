@@ -103,8 +103,10 @@ class Browser:
                 found: dict[str, Any] = answer["result"]
                 return found
 
-    def open(self, page: Path, width: int = 1200, height: int = 800, theme: str = "light", fragment: str = "") -> None:
-        """Open a page in a window of this size and theme."""
+    def open(
+        self, page: Path | str, width: int = 1200, height: int = 800, theme: str = "light", fragment: str = ""
+    ) -> None:
+        """Open a page, a file or an address, in a window of this size and theme."""
         self.errors, self.asked = [], []
         self.shape(width, height, theme)
         self._loaded = False
@@ -112,7 +114,7 @@ class Browser:
         self.call("Page.navigate", url="about:blank")
         self._until_loaded()
         self._loaded = False
-        self.call("Page.navigate", url=page.as_uri() + fragment)
+        self.call("Page.navigate", url=(page if isinstance(page, str) else page.as_uri()) + fragment)
         self._until_loaded()
 
     def shape(self, width: int, height: int, theme: str = "light", touch: bool = False) -> None:

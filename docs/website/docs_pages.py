@@ -11,7 +11,7 @@ import re
 import shutil
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 DOCS = ROOT / "docs"
 
 TOP = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md", "LICENSE")
@@ -19,6 +19,9 @@ TOP = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md", "LICENSE")
 
 HEADED = ("Commands", "Lectures", "Notebooks")
 """Parts of the index that stand in the head of every page, where there is such a part."""
+
+PROGRAMS = ("website", "playground")
+"""Folders of docs/ that make pages and are none."""
 
 LINK = re.compile(r"(?<!\\)(\]\()([^)\s#:]+)((?:#[^)]*)?\))")
 """A link within the project."""
@@ -35,7 +38,7 @@ def lecturers() -> dict[str, str]:
 def write_docs(source: Path, playground: bool) -> None:
     """Write the pages below `source`; `playground` says whether there is one to lead to."""
     for path in sorted(DOCS.rglob("*")):
-        if path.is_file():
+        if path.is_file() and path.relative_to(DOCS).parts[0] not in PROGRAMS:
             _write(path, source / path.relative_to(ROOT))
     for name in TOP:
         _write(ROOT / name, source / name)
