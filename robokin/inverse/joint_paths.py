@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, SupportsIndex
+from typing import Literal, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
-from robokin.brief import Answer
+from robokin.brief import Answer, Brief
 from robokin.errors import InputError
 from robokin.expected import expect_finite, expect_flag, expect_whole
 from robokin.inverse.follow import MOST
@@ -23,9 +23,6 @@ from robokin.kinematics.velocity import TaskName, dexterity, differential_kinema
 from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.model.named_values import plain_joint_values
 from robokin.model.robot import LIMIT_TOLERANCE
-
-if TYPE_CHECKING:
-    from robokin.inverse.path_branches import PathBranch
 
 PathTask = Literal["pose", "position"]
 
@@ -43,6 +40,28 @@ class Event:
     words: str
     joint: int | None = None
     value: float | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PathBranch(Brief):
+    """A branch that was tried for a path.
+
+    name: of the posture at its start, empty where the arm has no words; start: (n,) [rad | m]; fraction: of the path
+    that can be followed, 1 if all; event: what ends it, None for nothing; travel: (n,) how far each joint goes, both
+    ways counted [rad | m]; chosen: whether the path takes it.
+    """
+
+    name: str
+    start: Array
+    fraction: float
+    event: Event | None
+    travel: Array
+    chosen: bool = False
+
+    @property
+    def complete(self) -> bool:
+        """Whether it reaches the end."""
+        return self.fraction >= 1.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -13,15 +13,14 @@ some starts are tried.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.brief import Brief
 from robokin.inverse.follow import ITSELF
 from robokin.inverse.followed_curves import joint_scale
-from robokin.inverse.joint_paths import Event, Path
+from robokin.inverse.joint_paths import Path, PathBranch
 from robokin.inverse.solution_names import branch_names
 from robokin.model import CoupledRobot, Robot
 from robokin.model.robot import tolerated
@@ -35,28 +34,6 @@ TIE = 1e-6
 
 Follow = Callable[[Array, bool], Path]
 """The path from joint values (n,), with or without limits."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class PathBranch(Brief):
-    """A branch that was tried for a path.
-
-    name: of the posture at its start, empty where the arm has no words; start: (n,) [rad | m]; fraction: of the path
-    that can be followed, 1 if all; event: what ends it, None for nothing; travel: (n,) how far each joint goes, both
-    ways counted [rad | m]; chosen: whether the path takes it.
-    """
-
-    name: str
-    start: Array
-    fraction: float
-    event: Event | None
-    travel: Array
-    chosen: bool = False
-
-    @property
-    def complete(self) -> bool:
-        """Whether it reaches the end."""
-        return self.fraction >= 1.0
 
 
 def branches_of(robot: Robot, starts: Array, follow: Follow, limits: bool) -> tuple[PathBranch, ...]:

@@ -16,6 +16,7 @@ from robokin.inverse.follow import MOST
 from robokin.inverse.followed_curves import branch_starts, follow_curve, passable
 from robokin.inverse.joint_paths import (
     Path,
+    PathBranch,
     PathTask,
     interpolate_joints,
     line_task,
@@ -23,7 +24,7 @@ from robokin.inverse.joint_paths import (
     one_configuration,
     time_law,
 )
-from robokin.inverse.path_branches import PathBranch, branches_of, with_chosen
+from robokin.inverse.path_branches import branches_of, with_chosen
 from robokin.inverse.path_goals import Goal, Manner, nearest_to, points_through, tool_curve
 from robokin.inverse.solve import target_poses
 from robokin.inverse.trajectories import joined, reorientation, row_times, timed_curve, trajectory

@@ -10,8 +10,8 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.follow import ITSELF
-from robokin.inverse.joint_paths import Event, Path, line_task
-from robokin.inverse.path_branches import PathBranch, posture
+from robokin.inverse.joint_paths import Event, Path, PathBranch, line_task
+from robokin.inverse.path_branches import posture
 from robokin.kinematics.velocity import differential_kinematics
 from robokin.model import Robot
 from robokin.model.joint_units import in_units, joint_factors
