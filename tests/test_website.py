@@ -85,7 +85,11 @@ def test_a_picture_has_no_background_and_something_on_it_and_is_the_same_each_ti
 def test_what_an_entry_writes_and_what_the_gallery_says_of_it(tmp_path):
     for folder in ("pages", "files/pictures", "files/descriptions", "files/turning"):
         (tmp_path / folder).mkdir(parents=True)
-    told = [write_entry(id, tmp_path / "pages", tmp_path / "files", {}) for id in ("four-bar", "car")]
+    told = [write_entry(id, tmp_path / "pages", tmp_path / "files", {}, id == "car") for id in ("four-bar", "car")]
+    led = [
+        f"playground/index.html#r={id}" in (tmp_path / "pages" / f"{id}.md").read_text() for id in ("four-bar", "car")
+    ]
+    assert led == [False, True]
     for id in ("four-bar", "car"):
         write_turning(id, tmp_path / "files")
     written = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file()}

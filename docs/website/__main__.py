@@ -36,7 +36,7 @@ def main() -> int:
         shutil.copytree(options.playground, site / "playground")
     pages, files = source / "gallery", site / "gallery"
     with ProcessPoolExecutor(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else None) as pool:
-        write_gallery(pages, files, pool)
+        write_gallery(pages, files, pool, options.playground is not None)
         print(f"the pages' source and the gallery's pictures: {time.monotonic() - start:.0f} s", flush=True)
         # What turns is made meanwhile: no other page is made of it.
         turning = pool.map(partial(write_turning, files=files), library_names(), chunksize=4)
@@ -52,12 +52,12 @@ def main() -> int:
     return 1 if found else 0
 
 
-def write_gallery(pages: Path, files: Path, pool: Executor) -> None:
+def write_gallery(pages: Path, files: Path, pool: Executor, playground: bool) -> None:
     """The gallery's page and those of its entries below `pages`, what they show below `files`."""
     pages.mkdir()
     for folder in ("pictures", "turning", "descriptions"):
         (files / folder).mkdir(parents=True)
-    write = partial(write_entry, pages=pages, files=files, lectures=lecturers())
+    write = partial(write_entry, pages=pages, files=files, lectures=lecturers(), playground=playground)
     entries = list(pool.map(write, library_names(), chunksize=4))
     (pages / "index.md").write_text(gallery_text(entries, lecturers()), encoding="utf-8")
 

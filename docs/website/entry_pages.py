@@ -31,10 +31,12 @@ COLUMNS = "78"
 Entry = Robot | Tree | Mechanism | WheeledBase
 
 
-def write_entry(id: str, pages: Path, files: Path, lectures: dict[str, str]) -> dict[str, Any]:
+def write_entry(
+    id: str, pages: Path, files: Path, lectures: dict[str, str], playground: bool = False
+) -> dict[str, Any]:
     """Write an entry's page (Markdown) below `pages`, its picture and its description below `files`.
 
-    lectures: the page, seen from the entry's, of each lecturer. Returns what the gallery says of the entry.
+    lectures: the page, seen from the entry's, of each lecturer; playground: whether the site has one. Returns what the gallery says of the entry.
     """
     entry = load_any(id)
     path = library_file(id)
@@ -43,7 +45,7 @@ def write_entry(id: str, pages: Path, files: Path, lectures: dict[str, str]) -> 
     (files / "descriptions" / path.name).write_bytes(path.read_bytes())
     record = documents.show(entry)
     text = path.read_text(encoding="utf-8")
-    (pages / f"{id}.md").write_text(page_text(entry, record, text, lectures), encoding="utf-8")
+    (pages / f"{id}.md").write_text(page_text(entry, record, text, lectures, playground), encoding="utf-8")
     return {"id": id, "name": record["name"], "kind": record["kind"], "folder": path.parent.name,
             "class": record.get("class"), "space": record.get("space"), "joints": joints_in_short(record),
             "description": record["description"], "source": record["source"]}  # fmt: skip
@@ -69,7 +71,9 @@ def turning_page(entry: Robot | Tree | Mechanism) -> bytes:
     return picture_of(entry, moved, None, entry.units, ".html", note=note)
 
 
-def page_text(entry: Entry, record: dict[str, Any], description: str, lectures: dict[str, str]) -> str:
+def page_text(
+    entry: Entry, record: dict[str, Any], description: str, lectures: dict[str, str], playground: bool = False
+) -> str:
     """The page of an entry in Markdown."""
     id, name = record["id"], record["name"]
     alt = f"{name}: {record['description']}" if record["description"] else name
@@ -81,6 +85,9 @@ def page_text(entry: Entry, record: dict[str, Any], description: str, lectures: 
         plain(sentence(record["description"])),
         f'<img class="robot" src="pictures/{id}.png" alt="{html.escape(alt)}" width="{WIDTH}" height="{HEIGHT}">',
         "" if isinstance(entry, WheeledBase) else _turning(id, name),
+        f'<a href="../playground/index.html#r={id}">Change it and ask about it in the playground</a>.'
+        if playground
+        else "",
         two_columns(facts(entry, record)),
         f"## {'Table' if isinstance(entry, Robot | Tree) else 'Joints' if isinstance(entry, Mechanism) else 'Wheels'}",
         _table(entry, record),

@@ -62,6 +62,7 @@ def _fault(path: Path, link: str, loaded: bool, pages: dict[Path, PageLinks]) ->
     if not goal.is_file():
         return "there is no such file"
     anchor = unquote(parts.fragment)
-    if anchor and goal in pages and anchor not in pages[goal].anchors:
+    # What has an "=" is no place but what a page of its own shows at its start.
+    if anchor and "=" not in anchor and goal in pages and anchor not in pages[goal].anchors:
         return f"there is no place '{anchor}' in it"
     return ""
