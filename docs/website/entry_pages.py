@@ -36,7 +36,8 @@ def write_entry(
 ) -> dict[str, Any]:
     """Write an entry's page (Markdown) below `pages`, its picture and its description below `files`.
 
-    lectures: the page, seen from the entry's, of each lecturer; playground: whether the site has one. Returns what the gallery says of the entry.
+    lectures: the page, seen from the entry's, of each lecturer; playground: whether the site has one. Returns what the
+    gallery says of the entry.
     """
     entry = load_any(id)
     path = library_file(id)
