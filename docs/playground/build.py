@@ -58,6 +58,9 @@ Pygments, which Rich would colour sources with, is left out."""
 NOT_NEEDED = re.compile(r"/tests?/|^numpy/f2py/|\.(pyi|c|h|a|pxd)$|^numpy/_core/include/")
 """What of numpy's wheel nothing here imports."""
 
+LICENCE = re.compile(r"(^|/)(LICENSE|COPYING|NOTICE)[^/]*$")
+"""Files that must go wherever a package goes."""
+
 LECTURES = ("lucia", "yim", "transforms", "laschi", "ahmed")
 
 
@@ -81,7 +84,9 @@ def build(folder: Path, cache: Path, numpy: Path | None = None) -> None:
     cache.mkdir(parents=True, exist_ok=True)
     pages(folder)
     unpack(fetched(f"pyodide-{PYODIDE}.tgz", cache), "package", PYODIDE_FILES, folder / "pyodide")
-    unpack(fetched(f"ace-builds-{ACE}.tgz", cache), "package/src-min-noconflict", EDITOR_FILES, folder / "editor")
+    editor = fetched(f"ace-builds-{ACE}.tgz", cache)
+    unpack(editor, "package/src-min-noconflict", EDITOR_FILES, folder / "editor")
+    unpack(editor, "package", ("LICENSE",), folder / "editor")
     (folder / "packages.zip").write_bytes(packages(numpy or fetched(NUMPY, cache)))
     if node := shutil.which("node"):
         subprocess.run([node, HERE / "compile.mjs", folder], check=True)
@@ -90,7 +95,7 @@ def build(folder: Path, cache: Path, numpy: Path | None = None) -> None:
 def pages(folder: Path) -> None:
     """The page with what robokin itself gives it: nothing is fetched."""
     folder.mkdir(parents=True, exist_ok=True)
-    for name in ("index.html", "play.css", "play.js", "worker.js"):
+    for name in ("index.html", "play.css", "play.js", "worker.js", "licences.txt"):
         shutil.copy(HERE / name, folder / name)
     (folder / "library.json").write_text(json.dumps(library(), ensure_ascii=False), encoding="utf-8")
     (folder / "lectures.json").write_text(json.dumps(lectures(), ensure_ascii=False), encoding="utf-8")
@@ -126,8 +131,9 @@ def unpack(archive: Path, within: str, names: tuple[str, ...], folder: Path) -> 
 
 
 def packages(numpy: Path) -> bytes:
-    """A zip archive of robokin, of what it needs, and of the engine; the same bytes for the same files."""
-    files = {"engine.py": HERE / "engine.py"}
+    """A zip archive of robokin, of what it needs, and of the engine, each with its licence; the same bytes for the same
+    files."""
+    files = {"engine.py": HERE / "engine.py", "robokin/LICENSE": ROOT / "LICENSE"}
     for path in sorted((ROOT / "robokin").rglob("*")):
         if path.is_file() and path.suffix not in (".pyc", ".so", ".pyd", ".c", ".h"):
             files[str(path.relative_to(ROOT))] = path
@@ -137,7 +143,7 @@ def packages(numpy: Path) -> bytes:
     for name in (*PACKAGES, "pyyaml"):
         for entry in distribution(name).files or ():
             text = str(entry)
-            if text.endswith((".py", "METADATA")) and not text.startswith(".."):
+            if (text.endswith((".py", "METADATA")) or LICENCE.search(text)) and not text.startswith(".."):
                 files[text] = Path(str(entry.locate()))
     data = {name: path.read_bytes() for name, path in files.items()}
     with zipfile.ZipFile(numpy) as wheel:

@@ -9,6 +9,7 @@ import sys
 import time
 from concurrent.futures import Executor, ProcessPoolExecutor
 from functools import partial
+from importlib.metadata import distribution
 from pathlib import Path
 
 from robokin.formats.library import library_names
@@ -72,8 +73,17 @@ def sphinx(source: Path, site: Path) -> bool:
     done = build_main([*arguments, str(source), str(site)])
     for name in (".buildinfo", "objects.inv", "_static/webpack-macros.html"):
         (site / name).unlink(missing_ok=True)
+    write_licences(site / "_static" / "licences")
     (site / ".nojekyll").touch()  # GitHub's pages leave out _static otherwise
     return done == 0
+
+
+def write_licences(folder: Path) -> None:
+    """The licences of those whose scripts and styles the site serves: they ask to go with them."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in ("sphinx", "pydata-sphinx-theme"):
+        found = next(file for file in distribution(name).files or () if "licenses/LICENSE" in file.as_posix())
+        (folder / f"{name}.txt").write_text(found.read_text(encoding="utf-8"), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import importlib.util
+import io
+import re
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -21,7 +24,8 @@ def module(name):
 
 
 engine = module("engine")
-pages = {page["id"]: page for page in module("build").lectures()}
+build = module("build")
+pages = {page["id"]: page for page in build.lectures()}
 
 
 @pytest.fixture(autouse=True)
@@ -98,3 +102,16 @@ def test_the_streams_are_as_before(monkeypatch):
     engine.run("fk planar2r --q 0,0")
     engine.run("fk nothing")
     assert (sys.stdin, sys.stdout, sys.stderr) == before
+
+
+def test_what_is_served_goes_with_its_licences(tmp_path):
+    wheel = tmp_path / "numpy.whl"
+    with zipfile.ZipFile(wheel, "w") as made:
+        made.writestr("numpy-2.dist-info/LICENSE.txt", "BSD")
+    names = zipfile.ZipFile(io.BytesIO(build.packages(wheel))).namelist()
+    told = (build.HERE / "licences.txt").read_text().lower()
+    for name in (*build.PACKAGES, "pyyaml", "numpy"):
+        folder = re.compile(rf"{re.sub('[-_]', '[-_]', name)}-[^/]*\.dist-info/(licenses/)?LICENSE", re.IGNORECASE)
+        assert any(map(folder.match, names)), name
+        assert name in told
+    assert "robokin/LICENSE" in names
