@@ -31,13 +31,15 @@ def group(name):
 
 USER = [Requirement(text) for text in PROJECT["project"]["dependencies"]]
 PLOT = [Requirement(text) for text in PROJECT["project"]["optional-dependencies"]["plot"]]
-FAR = [
-    Requirement(text) for name in ("parquet", "cluster") for text in PROJECT["project"]["optional-dependencies"][name]
+MORE = [
+    Requirement(text)
+    for name in ("parquet", "pandas", "cluster")
+    for text in PROJECT["project"]["optional-dependencies"][name]
 ]
 ASKED = {
     "user": USER,
     "build": group("build"),
-    "dev": USER + PLOT + FAR + group("dev"),
+    "dev": USER + PLOT + MORE + group("dev"),
     "release": group("release"),
     "site": group("site"),
     "oldest": USER + PLOT + group("test"),
@@ -78,6 +80,13 @@ def test_a_lock_is_in_step_with_what_is_asked(name):
     found = versions(name)
     for asked in ASKED[name]:
         assert any(asked.specifier.contains(version) for version in found[canonicalize_name(asked.name)]), asked
+
+
+def test_every_extra_is_described_and_tested():
+    text = (ROOT / "docs" / "install.md").read_text()
+    for name, wanted in PROJECT["project"]["optional-dependencies"].items():
+        assert f".[{name}]" in text, name
+        assert {one.name for one in map(Requirement, wanted)} <= {one.name for one in ASKED["dev"]}, name
 
 
 @pytest.mark.parametrize("name", ["user", "build", "release", "site"])
