@@ -1,19 +1,9 @@
-// What pages of arms, of mechanisms and of frames begin with: their data, elements, numbers as text.
-const data = JSON.parse(document.getElementById("data").textContent);
-const $ = (id) => document.getElementById(id);
-const make = (tag, parent, text = "", more = {}) => {
-  const element = Object.assign(document.createElement(tag), more);
-  if (text) element.textContent = text;
-  return parent.appendChild(element);
-};
-const plain = (value) => String(+value.toPrecision(6));
-const DECIMALS = {m: 4, cm: 2, mm: 1, in: 3, deg: 2, rad: 4};
+// What pages of arms, of mechanisms and of frames say of poses: numbers, matrices, angles, commands.
 const shown = (value, kind, more = 0) => {
   const text = value.toFixed(DECIMALS[kind] + more);
   return /^-[0.]*$/.test(text) ? text.slice(1) : text;
 };
 const ANGLE = data.angle === "deg" ? "°" : "rad";
-document.title = $("title").textContent = data.title;
 $("note").textContent = data.note;
 const UNIT = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 // R = Rz(yaw) Ry(pitch) Rx(roll), in the page's angle unit; roll is 0 where pitch is ±90°.
