@@ -168,6 +168,8 @@ def library() -> dict[str, object]:
 
 def lectures() -> list[dict[str, object]]:
     """The pages of the lectures: their titles, and their parts in order, text as HTML and commands."""
+    from documentation import steps
+
     found = []
     for name in LECTURES:
         text = (ROOT / "docs" / "lectures" / f"{name}.md").read_text(encoding="utf-8")
@@ -177,7 +179,7 @@ def lectures() -> list[dict[str, object]]:
         for token in tokens:
             if token.type == "fence" and token.info == "console":
                 parts.append({"html": reader.renderer.render(held, reader.options, {})} if held else {})
-                parts.extend({"command": command} for command in commands(token.content))
+                parts.extend({"command": step.command} for step in steps(f"```console\n{token.content}```"))
                 held = []
             else:
                 held.append(token)
@@ -190,17 +192,7 @@ def lectures() -> list[dict[str, object]]:
     return found
 
 
-def commands(block: str) -> list[str]:
-    """The commands of a console block: what stands after `$ `, with the lines after `> ` that go on with it."""
-    found: list[str] = []
-    for line in block.splitlines():
-        if line.startswith("$ "):
-            found.append(line[2:])
-        elif line.startswith("> ") and found:
-            found[-1] += "\n" + line[2:]
-    return found
-
-
 if __name__ == "__main__":
-    sys.path.insert(0, str(HERE))
+    # The engine, and what the tests take for the commands of a page.
+    sys.path[:0] = [str(HERE), str(ROOT / "tests")]
     main()
