@@ -36,15 +36,10 @@ from robokin.inverse.verify import (
 )  # fmt: skip
 from robokin.kernel.native_kernel import native
 from robokin.spatial.angles import TURN
+from robokin.spatial.rigid_poses import CLEAN, LAST_ROW
 from robokin.spatial.transforms import FARTHEST
 
-RIGID = 1e-14
-"""Error of a rotation that is rounding: of a greater one the nearest rotation is taken."""
-
-BOTTOM = 1e-9
-"""How far the last row of a target may be from 0 0 0 1."""
-
-LAST_ROW = (0.0, 0.0, 0.0, 1.0)
+BOTTOM = (0.0, 0.0, 0.0, 1.0)
 
 FIRST_CELLS, CELLS = (int(cells) for cells in KEY_CELLS[:2])
 HALF_FIRST, HALF = 0.5 * (FIRST_CELLS - 1), 0.5 * (CELLS - 1)
@@ -79,8 +74,8 @@ def plain_pose(T: Any) -> bool:
     determinant = (d * h - g * e) * c + (g * b - a * h) * f + (a * e - d * b) * i
     # What is no number is not within any bounds.
     near = -FARTHEST <= x <= FARTHEST and -FARTHEST <= y <= FARTHEST and -FARTHEST <= z <= FARTHEST
-    last = all(abs(entry - wish) <= BOTTOM for entry, wish in zip(bottom, LAST_ROW, strict=True))
-    return bool(error <= RIGID and determinant > 0.0 and near and last)
+    last = all(abs(entry - wish) <= LAST_ROW for entry, wish in zip(bottom, BOTTOM, strict=True))
+    return bool(error <= CLEAN and determinant > 0.0 and near and last)
 
 
 def solve_one(

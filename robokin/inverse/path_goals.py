@@ -16,9 +16,11 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from robokin.arrays import Array
+from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.follow import HALVINGS
 from robokin.inverse.followed_curves import joint_scale
+from robokin.inverse.frame_motions import FARTHEST
 from robokin.inverse.full_turns import equivalents, turns_of_limits
 from robokin.inverse.joint_paths import PathTask, line_task
 from robokin.inverse.solutions import Result
@@ -64,6 +66,14 @@ class Manner:
     follows: PathTask | None = None
     timing: Timing | None = None
     halvings: int = HALVINGS
+
+
+def expect_near(robot: Robot, goals: Sequence[Goal]) -> None:
+    """Raise InputError for joint values whose pose is too far away: squares of what is larger are no numbers."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        poses = [forward_kinematics(robot, goal.q) for goal in goals if goal.q is not None]
+    if any(not np.all(np.abs(T) < FARTHEST) for T in poses):
+        raise InputError("the pose is too far away for a number, expected less")
 
 
 def tool_curve(robot: Robot, start: Array, goal: Goal, manner: Manner) -> tuple[ToolCurve, PathTask | None] | str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import counted
-from robokin.kinematics.structure import arm_size
+from robokin.inverse.followed_curves import joint_scale
 from robokin.number_text import show
 from robokin.records.envelope import envelope
 from robokin.records.path_records import PathRecords
@@ -90,7 +90,7 @@ class PathReport:
             gets = "" if best.chosen else f"; the one from {start}{name} gets farthest, to {show(best.fraction)}"
             yield f"{tried} none reaches the end{gets}"
         elif best.chosen:
-            joint = int(np.argmax(best.travel / np.where(robot.revolute, 1.0, arm_size(robot))))
+            joint = int(np.argmax(best.travel / joint_scale(robot)))
             travel = show(self.records.branch(best)["travel"][joint])
             unit = units.angle if robot.revolute[joint] else units.length
             most = f"joint {joint + 1} by {travel} {unit}"

@@ -16,7 +16,6 @@ from robokin.cli.timing_options import TimingOptions
 from robokin.errors import InputError
 
 if TYPE_CHECKING:
-    from robokin.arrays import Array
     from robokin.inverse.path_goals import Goal
     from robokin.model import Robot
     from robokin.units import Units
@@ -97,7 +96,7 @@ def command(
     """
     from robokin.cli.targets import parse_place
     from robokin.inverse.follow import MOST
-    from robokin.inverse.path_goals import Manner
+    from robokin.inverse.path_goals import Manner, expect_near
     from robokin.inverse.paths_to_poses import path_through
     from robokin.pictures.picture_files import MOVING, picture_ending
     from robokin.records.path_records import PathRecords
@@ -124,7 +123,7 @@ def command(
     if not to and not target.given:
         raise InputError("there is no end, expected --to, --pose, --matrix, --xyz or --xy")
     goals = [_goal(text, model, units, "--to") for text in to or []] or [_target(target.texts, model, units)]
-    _expect_near(model, [goal.q for goal in (begin, *goals) if goal.q is not None])
+    expect_near(model, (begin, *goals))
     via = None if arc is None else parse_place(arc, "--arc", model, units)
     manner = Manner(way, via, not no_limits, chosen, timing.read(model, units, way))
     path = path_through(model, begin if begin.q is None else begin.q, goals, count, manner)
@@ -172,15 +171,3 @@ def _target(texts: dict[str, str | None], robot: Robot, units: Units) -> Goal:
     for note in target.notes:
         say(note)
     return Goal(T=target.T, task=target.task)
-
-
-def _expect_near(robot: Robot, configurations: list[Array]) -> None:
-    """Raise InputError for a configuration whose pose is too far away: squares of what is larger are no numbers."""
-    import numpy as np
-
-    from robokin.kinematics.forward import forward_kinematics
-
-    with np.errstate(over="ignore", invalid="ignore"):
-        poses = [forward_kinematics(robot, q) for q in configurations]
-    if any(not np.all(np.abs(T) < 1e100) for T in poses):
-        raise InputError("the pose is too far away for a number, expected less")
