@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw
 from robokin.arrays import Array
 from robokin.model import Mechanism, Robot, Tree, WheeledBase
 from robokin.pictures.arm import body_frames, default_configuration
-from robokin.pictures.arm_faces import Face, arm_faces, colour, frame_faces, ordered
+from robokin.pictures.arm_faces import COLOURS, Face, arm_faces, colour, frame_faces, ordered
 from robokin.pictures.arm_scene import Scene, eye_axes
 from robokin.pictures.drawn_arm import AskedPostures, given_postures, scene_of
 from robokin.pictures.mechanism_scene import mechanism_scene, shape_faces
@@ -87,7 +87,7 @@ def _plan(base: WheeledBase) -> list[Face]:
     places = np.array([[wheel.x, wheel.y, 0.0] for wheel in base.wheels])
     middle = places.mean(axis=0)
     size = max(float(np.max(np.ptp(places, axis=0))), *(2.0 * wheel.radius for wheel in base.wheels), 1e-6)
-    faces = [_strip(middle, place, 0.03 * size, "#a9bac9") for place in places]
+    faces = [_strip(middle, place, 0.03 * size, COLOURS["link"]) for place in places]
     for wheel, place in zip(base.wheels, places, strict=True):
         radius, paint = wheel.radius or 0.08 * size, WHEELS[wheel.type]
         along = np.array([np.cos(wheel.angle), np.sin(wheel.angle), 0.0])
@@ -96,11 +96,11 @@ def _plan(base: WheeledBase) -> list[Face]:
             continue
         if wheel.type == "castor":
             hub = place - wheel.offset * along
-            faces += [_strip(place, hub, 0.02 * size, "#6d757d"), _disc(place, 0.03 * size, "#6d757d")]
+            faces += [_strip(place, hub, 0.02 * size, COLOURS["base"]), _disc(place, 0.03 * size, COLOURS["base"])]
             place = hub
         faces.append(_strip(place - radius * along, place + radius * along, TYRE * radius, paint))
-    for k, paint in enumerate(("#cf2f2f", "#2a8f3c")):
-        faces.append(_strip(np.zeros(3), 0.18 * size * np.eye(3)[k], 0.014 * size, paint))
+    for k, axis in enumerate("xy"):
+        faces.append(_strip(np.zeros(3), 0.18 * size * np.eye(3)[k], 0.014 * size, COLOURS[axis]))
     return faces
 
 

@@ -18,6 +18,7 @@ from robokin.kinematics.structure import arm_size
 from robokin.model import Robot
 from robokin.model.joint_units import in_units, joint_factors
 from robokin.number_text import show
+from robokin.pictures.arm_faces import COLOURS
 
 WIDTH, HEIGHT, EDGE = 360.0, 260.0, 34.0
 """The picture and the room at its edges [px]."""
@@ -35,8 +36,6 @@ TOGETHER = 9.0
 
 PER_CENTIMETRE = 45.0
 """Pixels of a centimetre in TikZ."""
-
-COLOURS = (("x", "#c0392b"), ("y", "#1e8449"), ("z", "#1f5fbf"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +122,7 @@ def arm_sketch(robot: Robot) -> ArmSketch:
         labels, turning = [""] * len(places), [True] * len(places)
     shown = tuple(in_units(q, joint_factors(robot, robot.units)).tolist())
     axes = tuple(
-        (name, colour, tip) for (name, colour), tip in zip(COLOURS, tips, strict=True)
+        (name, COLOURS[name], tip) for name, tip in zip("xyz", tips, strict=True)
         if np.hypot(*(tip - points[-1])) > TOGETHER
     )  # fmt: skip
     return ArmSketch(points, tuple(zip(labels, turning, places, strict=True)), axes, shown)
