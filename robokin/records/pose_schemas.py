@@ -207,6 +207,37 @@ def singular() -> Schema:
     )  # fmt: skip
 
 
+def _branched() -> dict[str, Schema]:
+    """What a path says of its branches, where there are some."""
+    turn = record(
+        "A first move: joints turn while the tool stands still, where a line goes on only from another configuration.",
+        {
+            "steps": whole("How many steps it takes.", 1),
+            "joints": items(whole("A joint, from 1.", 1), "Those that turn."),
+            "end": numbers("The configuration that the line begins from [joint]."),
+        },
+    )
+    branch = record(
+        "A branch that was tried for a path.",
+        {
+            "branch": text("The name of its posture at the start, empty where the arm has none."),
+            "start": numbers("The configuration that it begins from [joint]."),
+            "complete": flag("Whether it reaches the end."),
+            "fraction": number("The part of the path that it can follow, from 0 to 1 [1].", 0.0),
+            "travel": numbers("How far each joint goes, both ways counted [joint]."),
+            "ends_by": maybe(text("What ends it."), "where it reaches the end"),
+            "chosen": flag("Whether the path takes it."),
+        },
+    )
+    return {
+        "branch": text("The name of the posture that a line or an arc begins in."),
+        "branch_at_end": text("The name of that which it ends in: another one after a singular configuration."),
+        "reorientation": turn,
+        "branches": items(branch, "The branches that were tried, the best first: of a line or an arc from a pose, or "
+                          "that does not reach its end."),
+    }  # fmt: skip
+
+
 def path() -> Schema:
     """Documents of `robokin path`."""
     row = {
@@ -233,33 +264,6 @@ def path() -> Schema:
             "words": text("The same in words."),
         },
     )
-    turn = record(
-        "A first move: joints turn while the tool stands still, where a line goes on only from another configuration.",
-        {
-            "steps": whole("How many steps it takes.", 1),
-            "joints": items(whole("A joint, from 1.", 1), "Those that turn."),
-            "end": numbers("The configuration that the line begins from [joint]."),
-        },
-    )
-    branch = record(
-        "A branch that was tried for a path.",
-        {
-            "branch": text("The name of its posture at the start, empty where the arm has none."),
-            "start": numbers("The configuration that it begins from [joint]."),
-            "complete": flag("Whether it reaches the end."),
-            "fraction": number("The part of the path that it can follow, from 0 to 1 [1].", 0.0),
-            "travel": numbers("How far each joint goes, both ways counted [joint]."),
-            "ends_by": maybe(text("What ends it."), "where it reaches the end"),
-            "chosen": flag("Whether the path takes it."),
-        },
-    )
-    more = {
-        "branch": text("The name of the posture that a line or an arc begins in."),
-        "branch_at_end": text("The name of that which it ends in: another one after a singular configuration."),
-        "reorientation": turn,
-        "branches": items(branch, "The branches that were tried, the best first: of a line or an arc from a pose, or "
-                          "that does not reach its end."),
-    }  # fmt: skip
     document = record(
         "A path.",
         {
@@ -274,7 +278,7 @@ def path() -> Schema:
             "events": items(event, "What happens on the way, in its order."),
             "path": items(record("A row.", row, rates), "The rows, from the start to where the path ends."),
         },
-        timed | more,
+        timed | _branched(),
     )
     line = record("A row (JSON lines).", {**head("robot", ROBOT), **row}, rates)
     return documents("path", "A path; a line of JSON lines holds one row.", [], path=document, row=line)
