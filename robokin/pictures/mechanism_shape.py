@@ -17,13 +17,13 @@ from robokin.mobility.gear_wheels import GearWheel, belt_lines, wheels_of
 from robokin.model import Mechanism, MechanismJoint
 from robokin.pictures.arm_bars import ROUND, SQUARE, perpendicular
 
-LINKS = ("#c8551b", "#1b4b72", "#3f7f4f", "#8a5a9e", "#b08a1e", "#4f8f9e", "#9e4f5f", "#5f5f9e")
+LINKS = ("#c8551b", "#3a7ab0", "#3f7f4f", "#8a5a9e", "#b08a1e", "#4f8f9e", "#9e4f5f", "#5f5f9e")
 """Colours of links, told apart by the colour-blind too when few."""
 
 PATHS = ("#d0021b", "#1f77b4", "#2ca02c", "#9467bd", "#8c564b")
 """Colours of the ways of points, on pages, in stills and in films."""
 
-GROUND = "#5d656d"
+GROUND = "#6d757d"
 """Colour of what stands still."""
 
 JOINTS = {

@@ -9,7 +9,7 @@ function steps(low, high, most) {
   return [];
 }
 const minusSign = (text) => text.replace("-", "−");
-const shown = (v) => minusSign(String(+v.toPrecision(6)));
+const tick = (v) => minusSign(plain(v));
 let plateNumber = 0;
 function plateIn(parent, plate, large) {
   const name = `clip${plateNumber++}`, box = make("figure", parent);
@@ -39,10 +39,10 @@ function plateIn(parent, plate, large) {
       s += `<path class="grid" d="M${f(X(x))} ${f(sides[1])}V${f(sides[3])}"/>`;
       if (X(x) - before < 34) continue;
       before = X(x);
-      s += `<text x="${f(Math.min(X(x), w - 4 - 3 * shown(x).length))}" y="${f(sides[3] + 16)}" text-anchor="middle">${shown(x)}</text>`;
+      s += `<text x="${f(Math.min(X(x), w - 4 - 3 * tick(x).length))}" y="${f(sides[3] + 16)}" text-anchor="middle">${tick(x)}</text>`;
     }
     for (const y of steps(low[1], up[1], Math.max(2, Math.floor((sides[3] - sides[1]) / 44))))
-      s += `<path class="grid" d="M${f(sides[0])} ${f(Y(y))}H${f(sides[2])}"/><text x="${f(sides[0] - 6)}" y="${f(Y(y) + 4)}" text-anchor="end">${shown(y)}</text>`;
+      s += `<path class="grid" d="M${f(sides[0])} ${f(Y(y))}H${f(sides[2])}"/><text x="${f(sides[0] - 6)}" y="${f(Y(y) + 4)}" text-anchor="end">${tick(y)}</text>`;
     s += `<path class="axis" d="M${f(sides[0])} ${f(sides[1])}V${f(sides[3])}H${f(sides[2])}"/>`;
     s += `<text x="${f((sides[0] + sides[2]) / 2)}" y="${f(sides[3] + 34)}" text-anchor="middle">${plate.labels[0]} [${data.length}]</text>`;
     const aside = Math.max(sides[0] - 46, 11);

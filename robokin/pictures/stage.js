@@ -45,7 +45,7 @@ function paint(faces, place) {
   }
 }
 function viewButtons() {
-  for (const [name, a, e] of [["slanting", -58, 22], ["top", -90, 90], ["front", -90, 0], ["side", 0, 0]]) {
+  for (const [name, a, e] of [["isometric", -58, 22], ["top", -90, 90], ["front", -90, 0], ["side", 0, 0]]) {
     make("button", $("views"), name).addEventListener("click", () => { zoom = 1; shift = [0, 0]; view(a, e); });
     $("views").append(" ");
   }

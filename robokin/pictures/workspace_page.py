@@ -22,6 +22,9 @@ DIGITS = 5
 INCLUDE = re.compile(r"@INCLUDE ([a-z]+\.(?:js|css))@")
 """Where a page takes in a script or a style that it shares with others."""
 
+COMMENT = re.compile(r"^ *// .*\n", re.MULTILINE)
+"""A line of a script that is for its developers: a page carries none."""
+
 STEPS = 65535
 """Steps along a side of the cloud's box."""
 
@@ -34,6 +37,7 @@ def page(picture: Picture) -> bytes:
     solid, cloud = picture.solid, picture.cloud
     data = {
         "title": picture.title,
+        "note": "",
         "subtitle": picture.subtitle,
         "robot": picture.robot,
         "options": picture.options,
@@ -63,6 +67,7 @@ def filled(template: str, title: str, data: dict[str, Any]) -> bytes:
     folder = resources.files("robokin.pictures")
     page = folder.joinpath(template).read_text(encoding="utf-8")
     page = INCLUDE.sub(lambda found: folder.joinpath(found[1]).read_text(encoding="utf-8").rstrip("\n"), page)
+    page = COMMENT.sub("", page)
     before, _, rest = page.partition("@TITLE@")
     middle, _, after = rest.partition("@DATA@")
     return (before + html.escape(title) + middle + text + after).encode(errors="backslashreplace")

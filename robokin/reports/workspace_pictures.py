@@ -64,7 +64,7 @@ def picture_of(
     panels = [_panel(found, view, line, pose, cores) for view in views or _flat_views(found, units)]
     known = [(name, value) for name, value in figures(found, units, cuts) if name]
     picture = Picture(robot.name, _subtitle(found, units), units, panels, figures=known,
-                      robot=robot.id, options=_options(found))  # fmt: skip
+                      robot=robot.id, options=_options(found, views))  # fmt: skip
     if views or not (space.dimension == 3 or not panels):
         return picture
     if not cut and space.dimension == 3:
@@ -77,9 +77,10 @@ def picture_of(
     return replace(picture, cloud=cloud(space, found.seed, [line], cut=cut and space.dimension == 3))
 
 
-def _options(found: Workspace) -> str:
+def _options(found: Workspace, views: Sequence[View]) -> str:
     """What a command says beside the robot to find the same."""
     asked = " --dextrous" if found.dexterity is not None else ""
+    asked += "".join(" --section" if view.radial else f" --slice {view.name}" for view in views)
     if found.samples != SAMPLES:
         asked += f" --samples {found.samples}"
     return asked + (f" --seed {found.seed}" if found.seed else "")

@@ -139,6 +139,8 @@ def test_events_are_marked_and_sought(tmp_path):
 LINKS = [
     ("#q=10,20,30,40,50,60", [10, 20, 30, 40, 50, 60], ""),
     ("#q=1e1,-2.5,30,40,50,60&units=mm,deg&view=30,40", [10, -2.5, 30, 40, 50, 60], ""),
+    ("#q=" + ",".join(["10.1234567891"] * 6), [10.1234567891] * 6, ""),
+    ("#view=30,40,2", None, ""),
     ("#t=1", [*np.degrees(PATH.q[25])], ""),
     ("#q=1,2,3", None, "found 3 joint values, expected 6"),
     ("#q=1,2,3,4,5,x", None, "q: found “x”, expected a number"),

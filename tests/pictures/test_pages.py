@@ -8,11 +8,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import robokin
 from robokin.formats.library import load_any
+from robokin.inverse.frame_motions import frame_motion
+from robokin.pictures.drawn_frames import frames_picture
 from robokin.reports.workspace_pictures import workspace_picture
+from robokin.spatial import rotation_from_rpy, transform
+from robokin.units import Units
 from robokin.workspace.analyse import analyse_workspace
 
 from .browser import Browser, browser, needs_browser
@@ -29,6 +34,16 @@ def plot(name: str, **options: object) -> bytes:
     return robokin.draw(load_any(name, {}), kind="html", **options).data  # type: ignore[arg-type]
 
 
+def path(name: str, *stops: tuple[float, ...]) -> bytes:
+    moved = robokin.trajectory(robokin.load(name), np.radians(stops), duration=2.0)
+    return robokin.draw(moved, kind="html").data
+
+
+def frames(rpy: tuple[float, ...], place: tuple[float, ...]) -> bytes:
+    last = transform(rotation_from_rpy(np.array(rpy)), np.array(place))
+    return frames_picture(frame_motion(np.eye(4), last, "screw"), ("", "last"), Units("m", "deg"), "html")
+
+
 def workspace(*names: str, samples: int = 1024, dextrous: bool = False) -> bytes:
     robots = [robokin.load(name) for name in names]
     found = [analyse_workspace(robot, samples=samples, dextrous=dextrous, cores=1) for robot in robots]
@@ -40,6 +55,8 @@ PAGES: dict[str, Callable[[], bytes]] = {
     "arm": lambda: plot("puma560"),
     "sliding arm": lambda: plot("stanford"),
     "tree": lambda: plot("human-hand"),
+    "path": lambda: path("puma560", (0, 0, 90, 0, 0, 0), (60, -20, 70, 10, 400, 0)),
+    "frames": lambda: frames((0.5, 1.0, 1.5), (1.0, 2.0, 0.0)),
     "mechanism": lambda: plot("four-bar"),
     "planar workspace": lambda: workspace("planar2r"),
     "two workspaces": lambda: workspace("planar2r", "planar2r"),
@@ -52,7 +69,7 @@ PAGES: dict[str, Callable[[], bytes]] = {
 }
 
 
-SAMPLE = ("arm", "tree", "mechanism", "planar workspace", "open solid", "solid dexterity", "surface")
+SAMPLE = ("path", "frames", "tree", "mechanism", "planar workspace", "open solid", "solid dexterity", "surface")
 """Kinds that are looked at each time; the others are like one of them."""
 
 KINDS = [kind if kind in SAMPLE else pytest.param(kind, marks=pytest.mark.slow) for kind in PAGES]
@@ -78,7 +95,7 @@ def opened(path: Path, width: int = 1280, theme: str = "light", fragment: str = 
     tab.call(
         "Runtime.evaluate", expression=f"(() => {{ {CHECKS}\n window.checks = {{look, stops, focused, drawn}}; }})()"
     )
-    tab.run("await frame(); await frame();")
+    tab.run("await frame(); await frame(); if (window.robokin.motion) robokin.motion.pause();")
     return tab
 
 

@@ -95,8 +95,10 @@ def test_cut_keys_place_link_and_command(found, tmp_path):
     tab.open(tmp_path / "page.html", fragment="#" + seen["address"].partition("#")[2])
     assert tab.run("await frame(); return $('cutvalue').textContent;") == seen["cut"] != first
     assert tab.run("return $('command').textContent;") == seen["command"]
-    tab.open(tmp_path / "page.html", fragment="#cut=w,3&view=a,b")
-    assert tab.run("await frame(); return $('said').textContent;").count("“") == 2
+    tab.open(tmp_path / "page.html", fragment="#view=10,20&cut=w,3")
+    said, view = tab.run("await frame(); return [$('said').textContent, robokin.view()];")
+    assert said.startswith("The link is not followed: cut: found “w,3”, expected ")
+    assert view == [-58, 22, 1], "nothing of it is followed"
     assert tab.errors == []
 
 
