@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -90,24 +90,45 @@ def _again(values: Array, kind: str, robot: Robot, units: Units) -> Array | None
 
 def joints_mistake(subject: Subject, q: Array, T: Array, task: Task, limits: bool) -> Mistake | None:
     """The known mistake in joint values q: (n,) [rad | m] that do not solve a task, or None."""
-    robot, units, allowed = subject.robot, subject.units, subject.allowed
-    meant = mistakes.joint_readings(robot, q, units, single=True)
-    sliding = ~robot.revolute
-    for mistake, other in mistakes.unit_readings(units, lengths=bool(sliding.any()), angles=False):
-        values = np.where(sliding, q * (other.metres / units.metres), q)
-        # A slide near zero is there in any unit.
-        if np.max(np.abs(values[sliding])) > mistakes.SURE * allowed.position:
-            meant.append((mistake, values))
-    # Where they lead, all at once: few are worth more than a look.
-    poses = forward_kinematics(robot, np.array([values for _, values in meant]).reshape(-1, robot.n))
-    wide = mistakes.loosened(allowed)
-    near = reached(robot, q, T, wide, task, limits).right
-    for k in np.flatnonzero(np.linalg.norm(poses[:, :3, 3] - T[:3, 3], axis=1) <= _reach(wide, T)).tolist():
+    wide = mistakes.loosened(subject.allowed)
+    near = reached(subject.robot, q, T, wide, task, limits).right
+    meant = _joints_meant(subject, q)
+    for k in _arriving(subject.robot, [values for _, values in meant], T, wide):
         mistake, values = meant[k]
-        unit = mistake.name in (mistakes.ANGLE_UNIT, mistakes.LENGTH_UNIT)
-        if reached(robot, values, T, wide if unit and not near else allowed, task, limits).right:
+        if not _told(subject, mistake, values):
+            continue
+        allowed = wide if mistake.name in UNITS and not near else subject.allowed
+        if reached(subject.robot, values, T, allowed, task, limits).right:
             return mistake
     return None
+
+
+UNITS = (mistakes.ANGLE_UNIT, mistakes.LENGTH_UNIT)
+"""Mistakes whose digits were meant for another unit."""
+
+
+def _joints_meant(subject: Subject, q: Array) -> list[tuple[Mistake, Array]]:
+    """What joint values q (n,) [rad | m] may have been meant as, in the same order for each q: (n,) [rad | m] each."""
+    robot, units = subject.robot, subject.units
+    sliding = ~robot.revolute
+    lengths = mistakes.unit_readings(units, lengths=bool(sliding.any()), angles=False)
+    return mistakes.joint_readings(robot, q, units, single=True) + [
+        (mistake, np.where(sliding, q * (other.metres / units.metres), q)) for mistake, other in lengths
+    ]
+
+
+def _told(subject: Subject, mistake: Mistake, values: Array) -> bool:
+    """Whether a reading is another one: a slide near zero is there in any unit."""
+    if mistake.name != mistakes.LENGTH_UNIT:
+        return True
+    return bool(np.max(np.abs(values[~subject.robot.revolute])) > mistakes.SURE * subject.allowed.position)
+
+
+def _arriving(robot: Robot, readings: Sequence[Array], T: Array, wide: Tolerance) -> list[int]:
+    """Which readings (n,) [rad | m] lead to a target's place, all looked at at once: few are worth more than that."""
+    poses = forward_kinematics(robot, np.array(readings).reshape(-1, robot.n))
+    near: list[int] = np.flatnonzero(np.linalg.norm(poses[:, :3, 3] - T[:3, 3], axis=1) <= _reach(wide, T)).tolist()
+    return near
 
 
 def _reach(allowed: Tolerance, T: Array) -> float:
@@ -118,10 +139,19 @@ def _reach(allowed: Tolerance, T: Array) -> float:
 def set_mistake(
     subject: Subject, given: list[Array], T: Array, task: Task, limits: bool, known: Result
 ) -> Mistake | None:
-    """The known mistake in configurations, each (n,) [rad | m], none of which solves a task: the other angle unit."""
-    robot, wide, turning = subject.robot, mistakes.loosened(subject.allowed), subject.robot.revolute
-    if not turning.any() or any(reached(robot, q, T, wide, task, limits).right for q in given):
+    """The known mistake in configurations, each (n,) [rad | m], none of which solves a task: the same one in all."""
+    robot, wide = subject.robot, mistakes.loosened(subject.allowed)
+    if not given:
         return None
-    ((mistake, meant),) = mistakes.unit_readings(subject.units, lengths=False, angles=True)
-    again = [np.where(turning, q * (meant.radians / subject.units.radians), q) for q in given]
-    return mistake if mark_set(robot, again, T, wide, task, limits, known).status == PASS else None
+    near = any(reached(robot, q, T, wide, task, limits).right for q in given)
+    meant = [_joints_meant(subject, q) for q in given]
+    for k in _arriving(robot, [values for _, values in meant[0]], T, wide):
+        mistake, again = meant[0][k][0], [readings[k][1] for readings in meant]
+        if not all(_told(subject, mistake, values) for values in again):
+            continue
+        if near and mistake.name in UNITS:
+            continue
+        allowed = wide if mistake.name in UNITS else subject.allowed
+        if mark_set(robot, again, T, allowed, task, limits, known).status == PASS:
+            return mistake
+    return None

@@ -20,7 +20,7 @@ from robokin.grading.pose_difference import PASS, pose_errors, pose_status
 from robokin.grading.tolerance import Tolerance
 from robokin.inverse.analysis import Task
 from robokin.inverse.self_motion.redundant import NOT_FOUND, UNPROVEN
-from robokin.inverse.solutions import Result
+from robokin.inverse.solutions import Result, Solution
 from robokin.inverse.solve import solve_many
 from robokin.inverse.verify import within_limits
 from robokin.kinematics.forward import forward_kinematics
@@ -108,16 +108,33 @@ def solutions_near(robot: Robot, T: Array, allowed: Tolerance, task: Task = "pos
 
     A target whose digits were cut may be just beyond what an arm with few joints can do.
     """
+    return solutions_near_each(robot, T[None], allowed, task, limits)[0]
+
+
+def solutions_near_each(
+    robot: Robot, targets: Array, allowed: Tolerance, task: Task = "pose", limits: bool = True
+) -> list[Result]:
+    """The same for targets (m, 4, 4) [m]: together they take a tenth of the time."""
     arguments: dict[str, Any] = {"limits": limits, "task": task}
-    result = solve_many(robot, T[None], **arguments)[0]
-    nearest = result.nearest
-    if nearest is None or pose_status(nearest.position_error, nearest.angle_error, allowed, T) != PASS:
-        return result
-    again = solve_many(robot, forward_kinematics(robot, nearest.q)[None], limits=limits)[0]
-    if task != "pose" or not again.solutions:
+    batch = solve_many(robot, targets, **arguments)
+    found = [batch[i] for i in range(len(targets))]
+    near: dict[int, Solution] = {}
+    for i, result in enumerate(found):
+        nearest = result.nearest
+        if nearest is None or pose_status(nearest.position_error, nearest.angle_error, allowed, targets[i]) != PASS:
+            continue
+        near[i] = nearest
+    if not near:
+        return found
+    again = solve_many(robot, forward_kinematics(robot, np.array([one.q for one in near.values()])), limits=limits)
+    for k, (i, nearest) in enumerate(near.items()):
+        if task == "pose" and again[k].solutions:
+            found[i] = again[k]
+            continue
         usable = nearest.within_limits or not limits
-        return replace(result, solutions=(nearest,) if usable else (), complete=False, basis=None, postures=False)
-    return again
+        own = (nearest,) if usable else ()
+        found[i] = replace(found[i], solutions=own, complete=False, basis=None, postures=False)
+    return found
 
 
 def countable(result: Result) -> bool:

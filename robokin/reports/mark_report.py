@@ -19,7 +19,7 @@ from robokin.records.mark_records import (
     summary,
 )
 from robokin.reports.page_parts import Part
-from robokin.tables.written_rows import csv_records, encode, json_document, json_line
+from robokin.tables.written_rows import csv_without_formulas, encode, json_document, json_line
 
 
 def written(report: Report, kind: str, level: str = ANSWER) -> bytes:
@@ -30,7 +30,7 @@ def written(report: Report, kind: str, level: str = ANSWER) -> bytes:
         head = report_head(report)
         return b"".join(json_line(head | item_record(item, level)) for item in report.items)
     if kind == "csv":
-        return csv_records(*report_rows(report, level))
+        return csv_without_formulas(*report_rows(report, level))
     if report.check == "sheet":
         from robokin.reports.sheet_report import sheet_page
 

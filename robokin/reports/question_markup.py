@@ -91,7 +91,7 @@ def latex_parts(blocks: Sequence[Block]) -> str:
         elif isinstance(block, RawBlock):
             parts.append(block.latex)
         else:
-            lines = [r"\begin{tabular}{" + "r" * len(block.headings) + "}", r"\toprule"]
+            lines = [r"\nopagebreak", r"\begin{tabular}{" + "r" * len(block.headings) + "}", r"\toprule"]
             lines += [_row(block.headings), r"\midrule", *map(_row, block.rows), r"\bottomrule", r"\end{tabular}"]
             parts.append("\n".join(lines))
     return "\n\n".join(parts)

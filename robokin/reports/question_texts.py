@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import cache
 
 from robokin.arrays import Array
+from robokin.errors import counted
 from robokin.grading.questions.count_exercise import CountExercise
 from robokin.grading.questions.exercise import Exercise, Given, RobotExercise
 from robokin.grading.questions.jacobian_exercise import JacobianExercise
@@ -101,14 +102,16 @@ def question_text(exercise: Exercise, given: Given) -> list[Block]:
             values,
             TextBlock(
                 f"Rows {', '.join(dict.fromkeys(one.name.split()[0] for one in exercise.quantities(given)))}, linear "
-                f"before angular, a column for each joint. {_allowed(exercise)} A number without a unit may be off by "
-                f"{decimal_text(exercise.allowed.angle, 4)}."
+                "before angular; a column for each joint, of a revolute one for a radian. A length may be off by "
+                f"{_allowed(exercise)[0]}, a number without a unit by {decimal_text(exercise.allowed.angle, 4)}."
             ),
         ]  # fmt: skip
     return [
         TextBlock(f"Give the pose of the end effector of {exercise.about} at"),
         values,
-        TextBlock(f"Asked for: {_form_in_words(exercise.form)}. {_allowed(exercise)}"),
+        TextBlock(
+            f"Asked for: {_form_in_words(exercise.form)}. A length may be off by {_off(exercise, ', an angle by')}."
+        ),
     ]
 
 
@@ -121,10 +124,27 @@ def _form_in_words(form: PoseForm) -> str:
     return f"{names}, where phi is the angle of the end effector's x axis" if "phi" in form.names else names
 
 
-def _allowed(exercise: RobotExercise) -> str:
+def _allowed(exercise: RobotExercise) -> tuple[str, str]:
+    """How far a length may be off, and an angle."""
     units, allowed = exercise.robot.units, exercise.allowed
-    length = f"{show(allowed.position / units.metres)} {units.length}"
-    return f"A length may be off by {length}, an angle by {show(allowed.angle / units.radians)} {units.angle}."
+    length, angle = allowed.position / units.metres, allowed.angle / units.radians
+    return f"{show(length)} {units.length}", f"{show(angle)} {units.angle}"
+
+
+def _off(exercise: PoseExercise | JointExercise, between: str) -> str:
+    """How far a pose may be off; of a position no angle is said."""
+    length, angle = _allowed(exercise)
+    return f"{length}{between} {angle}" if exercise.form.turns else length
+
+
+def _precision(exercise: JointExercise, given: Given) -> str:
+    """How far the pose of joint values may be off, and with how many decimals it never is for being rounded."""
+    lengths, angles = exercise.enough_decimals(given)
+    turning = exercise.robot.revolute
+    said = [f"angles with {counted(angles, 'decimal')}"] if turning.any() else []
+    said += [f"lengths with {counted(lengths, 'decimal')}"] if not turning.all() else []
+    where = "pose" if exercise.form.turns else "place"
+    return f"The {where} they lead to may be off by {_off(exercise, ' and')}: {' and '.join(said)} are enough."
 
 
 def _joint_text(exercise: JointExercise, given: Given) -> list[Block]:
@@ -138,7 +158,7 @@ def _joint_text(exercise: JointExercise, given: Given) -> list[Block]:
     return [
         TextBlock(f"The end effector of {exercise.about} is to be at{turns}"),
         TableBlock(headings, [[show(given[name]) for name in form.names]]),
-        TextBlock(f"{asked} {_allowed(exercise)}"),
+        TextBlock(f"{asked} {_precision(exercise, given)}"),
     ]
 
 

@@ -155,7 +155,27 @@ def _number(x: float) -> str:
     return WORDS.get(text) or re.sub(r"e([-+])0", r"e\1", text)
 
 
-def csv_records(columns: Sequence[str] | None, rows: Iterable[Sequence[Any]]) -> bytes:
+FORMULA = re.compile(r"[=+\-@\t\r\n＝＋－＠]")
+"""What a text begins with that a spreadsheet would run as a formula."""
+
+
+def no_formula(cell: Any) -> Any:
+    """A cell that no spreadsheet runs: a text that begins like a formula, and is no number, gets a ' before it."""
+    if not isinstance(cell, str) or not FORMULA.match(cell):
+        return cell
+    try:
+        float(cell)
+    except ValueError:
+        return f"'{cell}"
+    return cell
+
+
+def csv_without_formulas(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
+    """The same as `csv_records` for texts that strangers wrote, such as names of files and of students."""
+    return csv_records(columns, (map(no_formula, row) for row in rows))
+
+
+def csv_records(columns: Sequence[str] | None, rows: Iterable[Iterable[Any]]) -> bytes:
     """Rows of mixed values, quoted where they need it, below their header if there is one.
 
     Booleans are written as JSON has them, `true` and `false`; None is an empty cell.

@@ -18,6 +18,7 @@ import pytest
 
 import robokin
 from robokin.grading.answers.sheet_keys import read_sheet_key
+from robokin.tables.written_rows import no_formula
 
 from .conftest import invoke, refused
 
@@ -301,6 +302,29 @@ def test_feedback_and_partial_credit(call, sheet, tmp_path):
         document = call(*words, "--feedback", level).json
         assert right not in json.dumps([item | {"got": None} for item in document["items"]])
         assert {item["expected"] for item in document["items"]} == {None}
+
+
+def test_a_decimal_comma_between_commas_is_named(call, sheet, tmp_path):
+    lines = [line | {"answer": "1,234"} for line in right_lines(sheet, "ada") if line["id"] == "1"]
+    page = call("check", "sheet", sheet / "key", "-i", written(tmp_path / "a.csv", lines), "--student", "ada").text
+    assert "found a decimal comma, expected a point (in '1,234')" in " ".join(page.split())
+
+
+def test_no_spreadsheet_runs_a_name_in_marks(call, sheet):
+    words = ("check", "sheet", sheet / "key", "-i", sheet / "key" / "answers.csv")
+    names = {row[1] for row in call(*words, "-f", "csv").csv[1:]}
+    assert "'=cmd()" in names
+    assert not [name for name in names if name[0] in "=+-@"]
+    assert "=cmd()" in {item["student"] for item in call(*words, "--json").json["items"]}
+
+
+@pytest.mark.parametrize(
+    ("cell", "said"),
+    [("=1", "'=1"), ("@x", "'@x"), ("-x", "'-x"), ("\t=1", "'\t=1"), ("-1.5", "-1.5"), ("+1e3", "+1e3"),
+     (-1.5, -1.5), (None, None), ("", ""), ("a=1", "a=1")],
+)  # fmt: skip
+def test_what_begins_like_a_formula_and_is_no_number_is_text(cell, said):
+    assert no_formula(cell) == said
 
 
 def test_statistics_count_slips(call, sheet, tmp_path):

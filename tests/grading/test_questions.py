@@ -25,6 +25,7 @@ from robokin.grading.questions.sheets import WantedQuestion, drawn_sheet, wanted
 from robokin.grading.questions.student_names import file_names
 from robokin.grading.questions.typed_numbers import angle_text, decimal_text, multiples, round_step
 from robokin.model import Mechanism
+from robokin.model.joint_units import in_units, joint_factors
 from robokin.units import Units
 
 STUDENTS = ["ada", "ben", "cem", "dora", "eva", "fil"]
@@ -251,6 +252,33 @@ def test_a_slip_is_named(slip):
     named = [item.mistake == slip for item in report.items]
     assert report.passed == 0
     assert sum(named) >= len(named) - 1, [item.mistake for item in report.items]
+
+
+def test_a_slip_that_is_in_all_solutions_is_named():
+    """The elbow's sign is wrong in both: the right angles of the first joint then lead elsewhere."""
+    changed = {"solution 1 q2": -1.0, "solution 2 q2": -1.0}
+    report = marks(
+        sheet("ik-all", "planar2r"),
+        lambda _, own: {name: repr(float(text) * changed.get(name, 1.0)) for name, text in own.items()},
+    )
+    assert [item.mistake for item in report.items] == ["sign"] * len(STUDENTS)
+
+
+@pytest.mark.parametrize("name", ["planar2r", "stanford", "scara", "anthropomorphic"])
+def test_joint_values_with_the_decimals_that_are_said_to_be_enough_are_right(name):
+    """Each is off by as much as rounding can: up or down by half a unit of the last decimal, by chance."""
+    rng = np.random.default_rng(5)
+
+    def rounded(question, own):
+        lengths, angles = question.exercise.enough_decimals(question.given)
+        turning = [quantity.unit == "deg" for quantity in question.exercise.quantities(question.given)]
+        robot = question.exercise.robot
+        exact = in_units(question.exercise.solutions(question.given)[0], joint_factors(robot, robot.units))
+        half = np.where(turning, 0.5 * 10.0**-angles, 0.5 * 10.0**-lengths)
+        return dict(zip(own, map(repr, (exact + rng.choice([-1.0, 1.0], len(half)) * half).tolist()), strict=True))
+
+    report = marks(sheet("ik", name), rounded)
+    assert report.passed == len(STUDENTS)
 
 
 # Names ------------------------------------------------------------------------------------------------------------

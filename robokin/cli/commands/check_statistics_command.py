@@ -36,7 +36,7 @@ def command(
     from robokin.records.statistics_records import statistics_record, statistics_rows
     from robokin.reports.statistics_page import statistics_page
     from robokin.tables.sink import sink
-    from robokin.tables.written_rows import csv_records, written
+    from robokin.tables.written_rows import csv_without_formulas, written
 
     kind = answer.kind
     found = class_statistics(mark for file in files for mark in read_marks(file))
@@ -44,7 +44,7 @@ def command(
     with sink(answer.file) as stream:
         stream.writelines(
             written(
-                kind, record, [record], lambda: csv_records(*statistics_rows(found)),
+                kind, record, [record], lambda: csv_without_formulas(*statistics_rows(found)),
                 lambda: statistics_page(record),
             )
         )  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
@@ -30,6 +31,9 @@ STUDENTS = ("student", "name")
 
 GREATEST = 1e12
 """Numbers beyond this, in any unit, are no lengths and no joint values; their squares would not be finite."""
+
+COMMA = re.compile(r"\s*[-+]?\d+,\d+\s*")
+"""A number with a decimal comma; in a file whose cells are separated by commas it may as well group thousands."""
 
 NOTES = 20
 """Lines that are not marked that are named one by one."""
@@ -77,7 +81,8 @@ def number(cell: str, angle: bool, units: Units) -> float:
     try:
         return sized(number_in(cell, units, angle))
     except ExpressionError as error:
-        raise NoAnswerError(NOT_A_NUMBER, str(error)) from None
+        said = f"found a decimal comma, expected a point (in '{cell}')" if COMMA.fullmatch(cell) else str(error)
+        raise NoAnswerError(NOT_A_NUMBER, said) from None
 
 
 def sized(value: float) -> float:

@@ -13,17 +13,18 @@ from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.grading.answers.answer_tasks import JointReader
 from robokin.grading.answers.answered_poses import AnsweredPose, pose_from
-from robokin.grading.configuration_marks import reached, solutions_near
+from robokin.grading.configuration_marks import reached, solutions_near, solutions_near_each
 from robokin.grading.joint_marks import JointCheck, task_of
 from robokin.grading.marking import GivenAnswer
 from robokin.grading.questions.drawn_joints import clear_of_limits
 from robokin.grading.questions.exercise import AskedQuantity, Given, RobotExercise
 from robokin.grading.questions.pose_forms import REGULAR, PoseForm, given_values, regularity, target_form
 from robokin.grading.questions.seeded_numbers import SeededNumbers
-from robokin.grading.questions.typed_numbers import angle_text, decimal_text, whole_turn
+from robokin.grading.questions.typed_numbers import angle_text, decimal_text, decimals_for, whole_turn
 from robokin.inverse.solutions import Result
 from robokin.inverse.solve import solve_many
 from robokin.kinematics.forward import forward_kinematics
+from robokin.kinematics.jacobian import jacobian
 from robokin.model.joint_units import in_units, joint_factors
 
 if TYPE_CHECKING:
@@ -88,12 +89,14 @@ class JointExercise(RobotExercise):
         good = [bool(one) and self._reached(given, own) for one, given, own in zip(regular, candidates, q, strict=True)]
         if not self.redundant:
             chosen = [i for i, one in enumerate(good) if one]
-            for i, result in zip(chosen, self._all([candidates[i] for i in chosen]), strict=True):
+            results = dict(zip(chosen, self._all([candidates[i] for i in chosen]), strict=True))
+            for i, result in results.items():
                 good[i] = self.clear(result, q[i])
-                if good[i] and self.scarce:
+            self._keep([given for given, one in zip(candidates, good, strict=True) if one])
+            for i, result in results.items() if self.scarce else ():
+                if good[i]:
                     within = self.robot.within_limits(np.array([solution.q for solution in result.solutions]))
                     good[i] = len(self.solutions(candidates[i])) == np.count_nonzero(within)
-            self._keep([given for given, one in zip(candidates, good, strict=True) if one])
         return good
 
     @cached_property
@@ -103,12 +106,13 @@ class JointExercise(RobotExercise):
 
     def _keep(self, chosen: Sequence[Given]) -> None:
         """Note the solutions of some targets, found together: one by one they take ten times as long."""
-        if not chosen or self.scarce:
+        if not chosen:
             return
         targets = [self.question(given) for given in chosen]
-        batch = solve_many(self.robot, np.array([one.T for one in targets]), task=task_of(targets[0]))
-        for i, given in enumerate(chosen):
-            self.known[tuple(given_values(self.form, given))] = [solution.q for solution in batch[i].solutions]
+        poses = np.array([one.T for one in targets])
+        found = solutions_near_each(self.robot, poses, self.allowed, task_of(targets[0]))
+        for given, result in zip(chosen, found, strict=True):
+            self.known[tuple(given_values(self.form, given))] = [solution.q for solution in result.solutions]
 
     def _reached(self, given: Given, q: Array) -> bool:
         target, tight = self.question(given), replace(
@@ -177,6 +181,19 @@ class JointExercise(RobotExercise):
             angle_text(value, angles, units) if turns else decimal_text(value, lengths)
             for value, turns in zip(values, self.robot.revolute, strict=True)
         ]
+
+    def enough_decimals(self, given: Given) -> tuple[int, int]:
+        """Decimals of lengths and of angles with which no solution, rounded, is outside the tolerance.
+
+        All angles together move the end effector by half the tolerance at most, each length by a twentieth.
+        """
+        solutions = [self.si(given["made_of"])] if self.redundant else self.solutions(given)
+        turning, units = self.robot.revolute, self.robot.units
+        levers = np.linalg.norm(jacobian(self.robot, np.array(solutions))[:, :3, turning], axis=1)
+        off = self.allowed.position / max(float(np.max(np.sum(levers, axis=1), initial=0.0)), 1e-300)
+        if self.form.turns:
+            off = min(off, self.allowed.angle / max(int(np.count_nonzero(turning)), 1))
+        return self.answer_decimals[0], decimals_for(off / units.radians)
 
     def subject(self, given: Given) -> JointCheck:
         """The check of joint values."""

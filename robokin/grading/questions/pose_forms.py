@@ -38,6 +38,11 @@ class PoseForm:
     rows: tuple[int, ...]
     task: str = "pose"
 
+    @property
+    def turns(self) -> bool:
+        """Whether an orientation counts."""
+        return self.task == "pose"
+
     def unit(self, name: str, units: Units) -> str:
         """The unit of one of the numbers, "" for none."""
         if name in ("x", "y", "z") or name in ("m14", "m24", "m34"):
