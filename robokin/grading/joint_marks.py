@@ -24,7 +24,7 @@ from robokin.grading.configuration_marks import (
     solutions_near,
 )
 from robokin.grading.distinct import firsts
-from robokin.grading.feedback import Words, alike
+from robokin.grading.feedback import Words, alike, joined
 from robokin.grading.joint_words import JointWords
 from robokin.grading.mark_items import NOT_ANSWERED, NOT_DECIDED, Item
 from robokin.grading.marking import AnswerTask, GivenAnswer, GivenValue, NoAnswerError, repeated, undecided
@@ -162,7 +162,7 @@ class JointCheck(JointWords):
             known = f"there {'is' if count == 1 else 'are'} {counted(count, 'solution')}"
             return EXISTS, Words(answer=known if countable(result) else "there are solutions")
         if proven_none(result):
-            return PASS, alike(f"right: {result.reason}")
+            return PASS, joined([alike(f"right: {result.reason}"), self.just_beside(result)])
         return NOT_DECIDED, undecided("no solution was found, and that there is none is not proven")
 
 

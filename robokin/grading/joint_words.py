@@ -10,11 +10,15 @@ from robokin.grading.configuration_marks import DUPLICATE, OUTSIDE, Reached, Set
 from robokin.grading.feedback import Words, alike, joined
 from robokin.grading.marking import Subject
 from robokin.grading.pose_difference import PASS, WRONG_ORIENTATION, WRONG_POSITION
+from robokin.inverse.solutions import Result
 from robokin.model.joint_units import in_units, joint_factors
 from robokin.number_text import show
 
 TOLD = 20
 """Answers of a set of which it is said one by one what is wrong; `answers` has all."""
+
+BESIDE = 20.0
+"""A target that nothing reaches, and that is so many tolerances off at most, may have been meant to be reached."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +49,19 @@ class JointWords(Subject):
             f"q{joint} is outside its limits", f"{said}, outside its limits by {show(off)}",
             f"{said}, expected {show(low)} to {show(high)}",
         )  # fmt: skip
+
+    def just_beside(self, result: Result) -> Words:
+        """How far off the nearest pose of a target is that nothing reaches, where its digits may be why."""
+        nearest, allowed, units = result.nearest, self.allowed, self.units
+        if nearest is None:
+            return Words()
+        position, angle = nearest.position_error, nearest.angle_error
+        if not (position <= BESIDE * allowed.position and angle <= BESIDE * allowed.angle):
+            return Words()
+        parts = [(position / units.metres, units.length), (angle / units.radians, units.angle)]
+        off = " and ".join(f"{show(value)} {unit}" for value, unit in parts if show(value) != "0")
+        said = f"the nearest pose is off by {off}" if off else ""
+        return Words("", said, said)
 
     def set_words(self, mark: SetMark, answers: list[dict[str, Any]]) -> Words:
         """What is wrong with a set: the first answers that are wrong, in words, and what is missing."""

@@ -229,9 +229,20 @@ def test_repeated_lines_of_poses_do_not_count(call):
     assert (document["score"], document["total"]) == (0.5, 2)
 
 
+def test_that_there_is_no_solution_just_beside_what_an_arm_reaches_is_said_with_how_far(call):
+    """A wrist that is tilted by half a degree is none that four joints reach; 1.605 m is 5 mm beyond 1 m + 0.6 m."""
+    tilted = ("check", "ik", "scara", "--xyz", "375.5,420.9,336.9", "--rpy", "180,0.5,0", "--q", "none")
+    assert "; the nearest pose is off by " in call(*tilted, "--json").json["items"][0]["detail"]
+    told = call(*tilted, "--json", "--feedback", "part").json["items"][0]["detail"]
+    assert told == "right: orientation not attainable by this arm at that position"
+    far = call("check", "ik", "planar2r", "--xy", "1.605,0", "--q", "none", "--json").json["items"][0]["detail"]
+    assert far == "right: out of reach; the nearest pose is off by 0.005 m"
+
+
 def test_none_needs_a_proof(call):
     """A search that finds nothing proves nothing; out of reach of a planar arm is proven."""
-    assert call(*IK, "--xy", "90,0", "--q", "none", "--json").json["items"][0]["status"] == "pass"
+    item = call(*IK, "--xy", "90,0", "--q", "none", "--json").json["items"][0]
+    assert (item["status"], item["detail"]) == ("pass", "right: out of reach")
     robot = robokin.load("panda")
     T = robokin.forward_kinematics(robot, [0.0, 0.3, 0.0, -2.0, 0.0, 2.0, 0.0])
     T[:3, 3] += [0.0, 0.0, 0.9]
