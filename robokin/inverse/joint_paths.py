@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike
 
 from robokin.arrays import Array
 from robokin.brief import Answer, Brief
-from robokin.errors import InputError
+from robokin.errors import InputError, counted
 from robokin.expected import expect_finite, expect_flag, expect_whole
-from robokin.inverse.follow import MOST
+from robokin.inverse.follow import ITSELF, MOST
 from robokin.kinematics.forward import forward_kinematics
 from robokin.kinematics.velocity import TaskName, dexterity, differential_kinematics, lost_directions, motion_task
 from robokin.model import CoupledRobot, Robot, expect_robot
@@ -46,9 +46,9 @@ class Event:
 class PathBranch(Brief):
     """A branch that was tried for a path.
 
-    name: of the posture at its start, empty where the arm has no words; start: (n,) [rad | m]; fraction: of the path
-    that can be followed, 1 if all; event: what ends it, None for nothing; travel: (n,) how far each joint goes, both
-    ways counted [rad | m]; chosen: whether the path takes it.
+    name: of the posture at its start, empty where the arm has no words; start: (n,) [rad | m]; fraction: of the lines
+    or the arc that can be followed, 1 if all; event: what ends it, None for nothing; travel: (n,) how far each joint
+    goes, both ways counted [rad | m]; chosen: whether the path takes it.
     """
 
     name: str
@@ -65,6 +65,34 @@ class PathBranch(Brief):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class PathTurn(Brief):
+    """A turn of joints while the tool stands still, to where a line goes on from.
+
+    fraction: of the path where it begins; row: the first of its rows, from 0; steps: how many steps of rows it takes;
+    start, end: (n,) the configurations between which joints turn in proportion [rad | m].
+    """
+
+    fraction: float
+    row: int
+    steps: int
+    start: Array
+    end: Array
+
+    @property
+    def joints(self) -> list[int]:
+        """The joints that turn, from 1."""
+        return [int(j) + 1 for j in np.flatnonzero(np.abs(self.end - self.start) > ITSELF)]
+
+    @property
+    def words(self) -> str:
+        """The same in words."""
+        joints = " and ".join(str(joint) for joint in self.joints)
+        turn = f"joints {joints} turn" if len(self.joints) > 1 else f"joint {joints} turns"
+        how = f"in {counted(self.steps, 'step')} with the tool at rest, to where the path goes on from"
+        return f"{turn}, {how}" if self.fraction else f"{turn} first, {how}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Path(Answer):
     """A path, as far as it can be followed.
 
@@ -74,6 +102,7 @@ class Path(Answer):
     in a line or an arc. Of a path in time t is in seconds, from 0 to its duration [s] if all can be followed, and
     velocity and acceleration are (m, n) [rad/s | m/s, per s²]; else these three are None. reorientation: how many steps
     at the beginning turn joints while the tool stands still, where a line goes on from no other configuration;
+    turns: all such turns, also those at points between;
     branches: those that were tried, the best first: of a line or an arc from a pose, or that does not reach its end.
     """
 
@@ -92,6 +121,7 @@ class Path(Answer):
     acceleration: Array | None = None
     reorientation: int = 0
     branches: tuple[PathBranch, ...] = ()
+    turns: tuple[PathTurn, ...] = ()
 
     @property
     def complete(self) -> bool:

@@ -64,13 +64,17 @@ def posture(robot: Robot, q: Array) -> str:
     return branch_names(robot, q[None])[0]
 
 
-def with_chosen(robot: Robot, branches: tuple[PathBranch, ...], path: Path) -> tuple[PathBranch, ...]:
-    """The branches, that of the path marked as the chosen one; one is added where it is none of them."""
+def with_chosen(robot: Robot, branches: tuple[PathBranch, ...], path: Path, fraction: float) -> tuple[PathBranch, ...]:
+    """The branches, that of the path marked as the chosen one; one is added where it is none of them.
+
+    fraction: of its lines or its arc, without turns of joints between, that the path can follow.
+    """
     q = path.q[path.reorientation :]
+    start = path.turns[0].end if path.reorientation else q[0]
     travel = np.sum(np.abs(np.diff(q, axis=0)), axis=0)
     event = None if path.complete else path.events[-1]
-    own = PathBranch(posture(robot, q[0]), q[0], path.fraction, event, travel, True)
-    mine = [bool(np.max(np.abs(one.start - q[0]) / joint_scale(robot)) <= ITSELF) for one in branches]
+    own = PathBranch(posture(robot, start), start, fraction, event, travel, True)
+    mine = [bool(np.max(np.abs(one.start - start) / joint_scale(robot)) <= ITSELF) for one in branches]
     if not any(mine):
         return (*branches, own) if branches else ()
     place = mine.index(True)

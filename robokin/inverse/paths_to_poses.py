@@ -27,7 +27,7 @@ from robokin.inverse.joint_paths import (
 from robokin.inverse.path_branches import branches_of, with_chosen
 from robokin.inverse.path_goals import Goal, Manner, nearest_to, points_through, tool_curve
 from robokin.inverse.solve import target_poses
-from robokin.inverse.trajectories import joined, reorientation, row_times, timed_curve, trajectory
+from robokin.inverse.trajectories import joined, reorientation, row_times, timed_curve, too_short, trajectory
 from robokin.kinematics.forward import forward_kinematics
 from robokin.kinematics.velocity import is_singular
 from robokin.model import Robot
@@ -88,13 +88,13 @@ def path_through(robot: Robot, start: Array | Goal, goals: Sequence[Goal], steps
             found = nearest_to(robot, np.zeros(robot.n), start.T, manner.follows or line_task(robot), False)
             raise InputError(f"the start is {found.reason or 'not reached'}, expected a pose that the arm can take")
         first = branches[0].start
-        path = _along(robot, first, goals, steps, manner)
-        return replace(path, branches=with_chosen(robot, branches, path))
-    path = _along(robot, start, goals, steps, manner)
+        path, fraction = _along(robot, first, goals, steps, manner)
+        return replace(path, branches=with_chosen(robot, branches, path, fraction))
+    path, fraction = _along(robot, start, goals, steps, manner)
     if path.complete:
         return path
     branches = _branches(robot, Goal(T=forward_kinematics(robot, start)), goals, manner, True)
-    return replace(path, branches=with_chosen(robot, branches, path))
+    return replace(path, branches=with_chosen(robot, branches, path, fraction))
 
 
 def _branches(robot: Robot, first: Goal, goals: Sequence[Goal], manner: Manner, fixed: bool) -> tuple[PathBranch, ...]:
@@ -116,7 +116,7 @@ def _branches(robot: Robot, first: Goal, goals: Sequence[Goal], manner: Manner, 
 
     def follow(start: Array, limits: bool) -> Path:
         paths = _followed(robot, start, goals, TRIED, replace(free, limits=limits))
-        return _of_all(joined(paths), len(goals), _reached(paths))
+        return replace(_of_all(joined(paths), len(goals), _reached(paths)), fraction=_of_lines(paths, len(goals)))
 
     return branches_of(robot, starts, follow, manner.limits)
 
@@ -128,17 +128,29 @@ def _attainable(robot: Robot, goal: Goal, manner: Manner) -> bool:
     return bool(nearest_to(robot, np.zeros(robot.n), goal.T, manner.follows or line_task(robot), False).solutions)
 
 
-def _along(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> Path:
-    """The tool along lines or an arc from joint values start (n,)."""
+def _along(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> tuple[Path, float]:
+    """The tool along lines or an arc from joint values start (n,), and the part of these that is followed."""
     timing = manner.timing
     paths = _followed(robot, start, goals, steps, manner, _durations(robot, start, goals, steps, manner))
     whole = _of_all(joined(paths, timing.rate if timing is not None else None), len(goals), _reached(paths))
-    return whole if timing is None or timing.duration is None else replace(whole, duration=timing.duration)
+    missing = len(goals) - _reached(paths)
+    if missing and timing is None:
+        whole = replace(whole, t=whole.t * _reached(paths) / len(goals))
+    if missing and (timing is None or timing.rate is None):
+        whole = replace(whole, steps=whole.steps + missing * steps)
+    if timing is not None and timing.duration is not None:
+        whole = replace(whole, duration=timing.duration)
+    return whole, _of_lines(paths, len(goals))
 
 
 def _reached(paths: Sequence[Path]) -> int:
     """How many goals paths went to, the last one perhaps not to its end."""
     return sum(not path.reorientation for path in paths)
+
+
+def _of_lines(paths: Sequence[Path], goals: int) -> float:
+    """The part of the lines to all goals that paths follow: turns of joints before them are none."""
+    return (_reached(paths) - 1 + paths[-1].fraction) / goals
 
 
 def _of_all(path: Path, goals: int, reached: int) -> Path:
@@ -147,7 +159,8 @@ def _of_all(path: Path, goals: int, reached: int) -> Path:
         return path
     share = reached / goals
     events = tuple(replace(event, fraction=event.fraction * share) for event in path.events)
-    return replace(path, s=path.s * share, fraction=path.fraction * share, events=events)
+    turns = tuple(replace(turn, fraction=turn.fraction * share) for turn in path.turns)
+    return replace(path, s=path.s * share, fraction=path.fraction * share, events=events, turns=turns)
 
 
 def _durations(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> list[float] | None:
@@ -156,7 +169,7 @@ def _durations(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, ma
     if timing is None or timing.duration is None:
         return None
     # The pieces as fast as they may be say how they share the duration.
-    free = replace(manner, timing=replace(timing, duration=None, rate=None))
+    free = replace(manner, timing=replace(timing, duration=None))
     fastest = _followed(robot, start, goals, steps, free)
     times = [path.duration or 1.0 for path in fastest]
     if len(times) == len(goals) == 1:
@@ -166,8 +179,7 @@ def _durations(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, ma
     bounded = bool(np.isfinite([timing.limits.velocity, timing.limits.acceleration]).any())
     if bounded and longer < 1.0 - 1e-9:
         least = timing.duration / longer
-        found = f"found a duration of {timing.duration:g} s"
-        raise InputError(f"{found}, expected at least {least:.6g} s within the limits")
+        raise too_short(timing.duration, least)
     longer = max(longer, 1.0) if bounded else longer
     return [longer * time for time in times]
 

@@ -25,7 +25,7 @@ from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_finite, expect_flag, expect_number, expect_numbers, expect_whole
 from robokin.inverse.follow import MOST
 from robokin.inverse.followed_curves import follow_curve
-from robokin.inverse.joint_paths import Event, Path, PathTask, interpolate_joints, line_task, singularities
+from robokin.inverse.joint_paths import Event, Path, PathTask, PathTurn, interpolate_joints, line_task, singularities
 from robokin.inverse.joint_rates import curve_rates, spare_motions
 from robokin.inverse.time_profiles import BLEND, MotionLimits, Passing, Profile, timed_move
 from robokin.inverse.timed_curves import TimedCurve
@@ -40,6 +40,12 @@ PASSINGS = ("stop", "spline", "blend")
 
 LONGEST = 1e9
 """The longest duration [s]: thirty years."""
+
+LONGER = 8
+"""How often a path with rows of a rate is made longer at most: each time rows are at other places."""
+
+EXACT, LITTLE = 1e-9, 1e-3
+"""How far beyond limits is rounding, and how far rows of a rate may be in a duration that is asked for."""
 
 LOOKED_AT = 100
 """Steps of a line at least at which limits of velocity and acceleration are held."""
@@ -120,32 +126,68 @@ def timed_curve(
     """The tool along a curve from where it is at joint values first (n,), in time: see `follow_curve`, `timed_line`."""
     chosen = line_task(robot) if task is None else task
     bounded = bool(np.isfinite([timing.limits.velocity, timing.limits.acceleration]).any())
-    # Of few rows none may be where a joint is fastest.
-    looked_at = max(steps, LOOKED_AT) if bounded else steps
+    # Of few rows none may be where a joint is fastest; all of them are among those that are looked at.
+    looked_at = steps * math.ceil(LOOKED_AT / steps) if bounded else steps
     tau = row_times(1.0, looked_at, None)
     path = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
-    path = timed_line(path, curve, timing.profile, timing.limits, timing.duration, chosen)
+    if timing.rate is not None and timing.duration is not None and bounded:
+        least = timed_curve(robot, first, curve, replace(timing, duration=None), steps, limits, task).duration
+        assert least is not None
+        if timing.duration < least * (1.0 - LITTLE):
+            raise too_short(timing.duration, least)
+        path = timed_line(path, curve, timing.profile, motion_limits(robot, None, None), timing.duration, chosen)
+    else:
+        path = timed_line(path, curve, timing.profile, timing.limits, timing.duration, chosen)
     if timing.rate is None and looked_at == steps:
         return path
-    assert path.duration is not None
-    tau = rows_since(timing, path.duration, steps) / path.duration
-    tau[-1] = 1.0
-    again = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
+    duration, whole = timing.duration, path.duration
     free = motion_limits(robot, None, None)
-    return timed_line(again, curve, timing.profile, free, path.duration, chosen)
+    for _ in range(LONGER):
+        assert whole is not None
+        tau = rows_since(timing, whole, steps) / whole
+        tau[-1] = 1.0
+        again = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
+        timed = timed_line(again, curve, timing.profile, free, whole, chosen)
+        over = _over(timed, timing.limits)
+        if over <= 1.0 + (EXACT if duration is None else LITTLE):
+            return timed
+        # Rows of a rate are at none of the places that were looked at, and may be faster by a little.
+        if duration is not None:
+            raise too_short(duration, over * whole)
+        whole *= over
+    return timed
+
+
+def too_short(duration: float, least: float) -> InputError:
+    """What is said of a duration below the least within the limits [s]."""
+    return InputError(f"found a duration of {duration:g} s, expected at least {least:.6g} s within the limits")
+
+
+def _over(path: Path, limits: MotionLimits) -> float:
+    """By what factor a path in time must be slower to keep to limits at its rows."""
+    assert path.velocity is not None and path.acceleration is not None
+    faster = float(np.max(np.abs(path.velocity) / limits.velocity, initial=0.0))
+    harder = float(np.max(np.abs(path.acceleration) / limits.acceleration, initial=0.0))
+    return max(faster, math.sqrt(harder))
 
 
 def reorientation(robot: Robot, first: Array, last: Array, timing: Timing | None, steps: int) -> Path:
     """Joints from first (n,) to last (n,) [rad | m] in proportion, as the first move of a line, in its timing."""
     if timing is None:
         path = interpolate_joints(robot, first, last, steps, False)
-        return replace(path, reorientation=len(path) - 1)
+        return _as_turn(path, first, last)
     profile = timing.profile
     curve = timed_move(np.array([first, last]), profile, timing.limits, timing.duration)
     t = rows_since(timing, curve.duration, steps)
     path = _with_rows(robot, t, curve.duration, curve.at(t), 1.0, None, len(t) - 1)
     path.q[-1] = last
-    return replace(path, reorientation=len(path) - 1)
+    return _as_turn(path, first, last)
+
+
+def _as_turn(path: Path, first: Array, last: Array) -> Path:
+    """A path by joints as a turn from first to last (n,) before a line."""
+    steps = len(path) - 1
+    return replace(path, reorientation=steps, turns=(PathTurn(0.0, 0, steps, first, last),))
 
 
 def rows_since(timing: Timing, duration: float, steps: int) -> Array:
@@ -164,7 +206,9 @@ def joined(paths: Sequence[Path], rate: float | None = None) -> Path:
     if len(paths) == 1:
         return paths[0]
     times, parts, events, start = [], [], [], 0.0
+    turns: list[PathTurn] = []
     ends: list[int | None] = []
+    written = 0
     for k, path in enumerate(paths):
         count = rate * (start + (path.duration or 1.0)) if rate is not None else 0.0
         off = k + 1 < len(paths) and abs(count - round(count)) > 1e-9 * max(1.0, count)
@@ -172,6 +216,13 @@ def joined(paths: Sequence[Path], rate: float | None = None) -> Path:
         times.append(start + path.t)
         parts.append((k + path.s) / len(paths))
         events += [replace(event, fraction=(k + event.fraction) / len(paths)) for event in path.events]
+        # What a piece begins with is the last one's end, where that is a row.
+        begun = k > 0 and ends[k - 1] is None
+        since = written - begun
+        for turn in path.turns:
+            steps = max(turn.steps - off - (k > 0 and not begun), 0)
+            turns.append(replace(turn, fraction=(k + turn.fraction) / len(paths), row=since, steps=steps))
+        written += len(path) - (k > 0) - off
         start += path.duration or 1.0
     timed = all(path.duration is not None for path in paths)
     last = paths[-1]
@@ -189,7 +240,8 @@ def joined(paths: Sequence[Path], rate: float | None = None) -> Path:
         fraction=(len(paths) - 1 + last.fraction) / len(paths),
         events=tuple(events),
         manipulability=rows(path.manipulability for path in paths),
-        reorientation=sum(path.reorientation for path in paths[:1]),
+        reorientation=turns[0].steps if paths[0].turns else 0,
+        turns=tuple(turns),
         steps=sum(path.steps for path in paths) - sum(end is not None for end in ends),
         duration=start if timed else None,
         velocity=rows(path.velocity for path in paths) if timed else None,
@@ -230,7 +282,7 @@ def timed_line(
         math.sqrt(float(np.max(np.abs(push) / limits.acceleration, initial=0.0))),
     )
     if duration is not None and duration < least * (1.0 - 1e-9):
-        raise InputError(f"found a duration of {duration:g} s, expected at least {least:.6g} s within the limits")
+        raise too_short(duration, least)
     whole = duration if duration is not None else least if least > 0.0 else 1.0
     return replace(path, t=tau * whole, duration=whole, velocity=speed / whole, acceleration=push / whole**2)
 

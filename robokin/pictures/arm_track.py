@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.inverse.joint_paths import Path
+from robokin.inverse.joint_paths import Event, Path, PathTurn
 
 MOST_ROWS, MOST_VALUES = 181, 720
 """Rows that a picture keeps at most, and joint values in them: more are thinned out, so that a page stays small."""
@@ -35,12 +35,13 @@ class ArmTrack:
 
 
 def track_of(path: Path, words: Sequence[str] = ()) -> ArmTrack:
-    """The track of a path; words: what is said of each of its events, by default the event's own words."""
+    """The track of a path; words: what is said of each of its events and turns, by default its own words."""
     count = len(path.t)
     kept = np.array(rows_of(count, min(MOST_ROWS, max(MOST_VALUES // path.robot.n, 2))))
     timed = path.duration is not None
-    told = [*words[: len(path.events)], *(event.words for event in path.events[len(words) :])]
-    rows = [int(np.argmin(np.abs(path.s[kept] - event.fraction))) for event in path.events]
+    marked: list[Event | PathTurn] = [*path.events, *path.turns]
+    told = [*words[: len(marked)], *(one.words for one in marked[len(words) :])]
+    rows = [int(np.argmin(np.abs(path.s[kept] - one.fraction))) for one in marked]
     return ArmTrack(
         path.t[kept], path.q[kept], None if path.velocity is None else path.velocity[kept], path.T[kept, :3, 3],
         timed, 1.0 if timed else PLAYED, tuple(zip(rows, told, strict=True)),

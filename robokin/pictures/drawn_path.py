@@ -28,8 +28,8 @@ def path_picture(
 ) -> bytes:  # fmt: skip
     """A path as a file: html (a page that plays it), gif, or a still: png, svg or pdf.
 
-    notes: sentences on the way, first that of each event; words: the robot as a command line has it. Raises InputError
-    for a path that is too long for a picture, and without matplotlib for all but pages.
+    notes: sentences on the way, first those of each event and of each turn of joints; words: the robot as a command
+    line has it. Raises InputError for a path that is too long for a picture, and without matplotlib for all but pages.
     """
     scene = _scene(path, units, kind == "html", notes, view, words)
     return _film(scene) if kind == "gif" else arm_picture(scene, kind)
@@ -48,8 +48,8 @@ def _scene(
         rows = rows_of(last + 1, GHOSTS)
         names = {0: "start", last: end}
         postures = [Posture(path.q[row], names.get(row, ""), ghost=row < last) for row in rows]
-    # What is said of an event stands at its mark, where there is a way to mark.
-    told = tuple(notes[len(path.events) :] if last else notes)
+    # What is said of an event or a turn stands at its mark, where there is a way to mark.
+    told = tuple(notes[len(path.events) + len(path.turns) :] if last else notes)
     scene = scene_of(path.robot, units, AskedPostures(tuple(postures), notes=told), "", view, False, "--from")
     seconds = "" if path.duration is None else f", {path.duration:.6g} s"
     far = "" if path.complete else f", followed up to {path.fraction:.4g}"

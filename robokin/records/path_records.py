@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.inverse.follow import ITSELF
-from robokin.inverse.joint_paths import Event, Path, PathBranch, line_task
+from robokin.inverse.joint_paths import Event, Path, PathBranch, PathTurn, line_task
 from robokin.inverse.path_branches import posture
 from robokin.kinematics.velocity import differential_kinematics
 from robokin.model import Robot
@@ -86,6 +85,7 @@ class PathRecords:
             "least_manipulability": self.least(),
             **self.postures(),
             **({"reorientation": self.reorientation()} if path.reorientation else {}),
+            **({"reorientations": [self.turn(one) for one in path.turns]} if path.turns else {}),
             **({"branches": [self.branch(one) for one in path.branches]} if path.branches else {}),
             "events": [self.event(event) for event in events],
             "path": list(self.records()),
@@ -104,10 +104,12 @@ class PathRecords:
 
     def reorientation(self) -> dict[str, Any]:
         """The JSON of the first move, in which joints turn while the tool stands still."""
-        q, factors = self.path.q, joint_factors(self.robot, self.units)
-        last = self.path.reorientation
-        moved = np.flatnonzero(np.abs(q[last] - q[0]) > ITSELF) + 1
-        return {"steps": last, "joints": moved.tolist(), "end": in_units(q[last], factors).tolist()}
+        return {name: value for name, value in self.turn(self.path.turns[0]).items() if name not in ("fraction", "row")}
+
+    def turn(self, one: PathTurn) -> dict[str, Any]:
+        """The JSON of a turn of joints while the tool stands still."""
+        end = in_units(one.end, joint_factors(self.robot, self.units)).tolist()
+        return {"fraction": one.fraction, "row": one.row, "steps": one.steps, "joints": one.joints, "end": end}
 
     def branch(self, one: PathBranch) -> dict[str, Any]:
         """The JSON of a branch that was tried."""

@@ -212,9 +212,19 @@ def _branched() -> dict[str, Schema]:
     turn = record(
         "A first move: joints turn while the tool stands still, where a line goes on only from another configuration.",
         {
-            "steps": whole("How many steps it takes.", 1),
+            "steps": whole("How many steps it takes.", 0),
             "joints": items(whole("A joint, from 1.", 1), "Those that turn."),
             "end": numbers("The configuration that the line begins from [joint]."),
+        },
+    )
+    each_turn = record(
+        "A turn of joints while the tool stands still, to a configuration from which a line goes on.",
+        {
+            "fraction": number("Where on the path it begins, from 0 to 1 [1].", 0.0),
+            "row": whole("The place in `path` of its first row, from 0.", 0),
+            "steps": whole("How many steps it takes.", 0),
+            "joints": items(whole("A joint, from 1.", 1), "Those that turn."),
+            "end": numbers("The configuration that the line goes on from [joint]."),
         },
     )
     branch = record(
@@ -223,7 +233,7 @@ def _branched() -> dict[str, Schema]:
             "branch": text("The name of its posture at the start, empty where the arm has none."),
             "start": numbers("The configuration that it begins from [joint]."),
             "complete": flag("Whether it reaches the end."),
-            "fraction": number("The part of the path that it can follow, from 0 to 1 [1].", 0.0),
+            "fraction": number("The part of the lines or the arc that it can follow, from 0 to 1 [1].", 0.0),
             "travel": numbers("How far each joint goes, both ways counted [joint]."),
             "ends_by": maybe(text("What ends it."), "where it reaches the end"),
             "chosen": flag("Whether the path takes it."),
@@ -233,6 +243,7 @@ def _branched() -> dict[str, Schema]:
         "branch": text("The name of the posture that a line or an arc begins in."),
         "branch_at_end": text("The name of that which it ends in: another one after a singular configuration."),
         "reorientation": turn,
+        "reorientations": items(each_turn, "All such turns, also those at points between."),
         "branches": items(branch, "The branches that were tried, the best first: of a line or an arc from a pose, or "
                           "that does not reach its end."),
     }  # fmt: skip

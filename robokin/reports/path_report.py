@@ -49,12 +49,20 @@ class PathReport:
 
     def notes(self) -> Iterator[str]:
         """Sentences on what happens on the way, and on where the path ends."""
+        path = self.records.path
+        told = [(event.fraction, sentence) for event, sentence in zip(path.events, self.event_notes(), strict=True)]
+        turned = [(turn.fraction, sentence) for turn, sentence in zip(path.turns, self.turn_notes(), strict=True)]
+        yield from (sentence for _, sentence in sorted([*turned, *told], key=lambda one: one[0]))
+        yield from self.end_notes()
+
+    def turn_notes(self) -> Iterator[str]:
+        """A sentence on each turn of joints while the tool stands still."""
+        for turn in self.records.path.turns:
+            yield f"at {show(turn.fraction)} of the path: {turn.words}" if turn.fraction else turn.words
+
+    def event_notes(self) -> Iterator[str]:
+        """A sentence on each event on the way."""
         robot, path, units = self.records.robot, self.records.path, self.records.units
-        if path.reorientation:
-            turn = self.records.reorientation()
-            joints = " and ".join(str(joint) for joint in turn["joints"])
-            steps = counted(path.reorientation, "step")
-            yield f"joints {joints} turn first, in {steps} with the tool at rest, to where the path goes on from"
         for event in path.events:
             record = self.records.event(event)
             value = ""
@@ -63,6 +71,10 @@ class PathReport:
                 turns = robot.revolute[event.joint - 1]
                 value = f" at {show(record['value'])} {units.angle if turns else units.length}"
             yield f"at {show(event.fraction)} of the path: {event.words}{value}"
+
+    def end_notes(self) -> Iterator[str]:
+        """Sentences on where the path ends, and on its postures and branches."""
+        path = self.records.path
         if not path.complete:
             rows = counted(len(path.t), "row")
             yield f"it can be followed up to {show(path.fraction)} of the path: {rows} of {path.steps + 1}"
@@ -79,7 +91,8 @@ class PathReport:
 
     def branch_notes(self) -> Iterator[str]:
         """Sentences on the branches that were tried."""
-        robot, branches, units = self.records.robot, self.records.path.branches, self.records.units
+        robot, path, units = self.records.robot, self.records.path, self.records.units
+        branches = path.branches
         if not branches:
             return
         reach, best = sum(one.complete for one in branches), branches[0]
@@ -87,7 +100,8 @@ class PathReport:
         start = ",".join(show(value) for value in self.records.branch(best)["start"])
         name = f" ({best.name})" if best.name else ""
         if not reach:
-            gets = "" if best.chosen else f"; the one from {start}{name} gets farthest, to {show(best.fraction)}"
+            lines = f" of the {'arc' if path.kind == 'arc' else 'line'}" if path.turns else ""
+            gets = "" if best.chosen else f"; the one from {start}{name} gets farthest, to {show(best.fraction)}{lines}"
             yield f"{tried} none reaches the end{gets}"
         elif best.chosen:
             joint = int(np.argmax(best.travel / joint_scale(robot)))

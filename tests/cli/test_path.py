@@ -268,3 +268,15 @@ def test_a_first_turn_is_told(call):
     turn = answer.json["reorientation"]
     assert (turn["steps"], turn["joints"]) == (4, [4, 6])
     assert turn["end"] == pytest.approx(answer.json["path"][4]["q"])
+
+
+def test_a_turn_in_the_middle_stands_in_the_document_and_among_the_notes(call):
+    words = ["path", "puma560", "--from", "10,-2,65,0,67,0", "--to", "home"]
+    words += ["--to", "Trans(-300,700,200) RPY(0,90,90)", "--line", "--steps", "4"]
+    document = call(*words, "--json").json
+    (turn,) = document["reorientations"]
+    assert "reorientation" not in document and (turn["row"], turn["steps"], turn["joints"]) == (4, 4, [4, 6])
+    assert turn["end"] == pytest.approx(document["path"][8]["q"], abs=1e-6)
+    places = [row["position"] for row in document["path"][4:9]]
+    assert all(place == pytest.approx(places[0]) for place in places)
+    assert "at 0.333333 of the path: joints 4 and 6 turn, in 4 steps" in " ".join(call(*words).text.split())

@@ -11,6 +11,9 @@ import robokin
 from robokin.inverse.path_goals import Goal, Manner
 from robokin.inverse.paths_to_poses import path_through
 from robokin.inverse.trajectories import Timing, motion_limits
+from robokin.pictures.arm_track import track_of
+from robokin.records.path_records import PathRecords
+from robokin.reports.path_report import PathReport
 from robokin.spatial.angles import circled
 
 PUMA = robokin.load("puma560")
@@ -171,3 +174,69 @@ def test_points_of_a_path_by_joints_are_the_best_together():
     points = np.concatenate([start[None], curve.q[stops]])
     assert path.complete
     assert np.sum(np.max(np.abs(np.diff(points, axis=0)), axis=1)) == pytest.approx(best.min(), abs=1e-3)
+
+
+MID = (
+    np.radians([10, -2, 65, 0, 67, 0]),
+    [Goal(q=PUMA.poses["home"]), Goal(T=robokin.transform("Trans(-0.3, 0.7, 0.2) RPY(0, pi/2, pi/2)"))],
+)
+
+
+@pytest.mark.parametrize("rate", [None, 7.0])
+def test_a_turn_in_the_middle_is_told(rate):
+    timing = None if rate is None else Timing(motion_limits(PUMA, None, None), duration=9.0, rate=rate)
+    path = path_through(PUMA, *MID, 10, Manner("line", timing=timing))
+    (turn,) = path.turns
+    assert path.complete and not path.reorientation and turn.joints == [4, 6]
+    assert turn.fraction == pytest.approx(1 / 3) and "joints 4 and 6 turn, in" in turn.words
+    rows = slice(turn.row, turn.row + turn.steps + 1)
+    assert np.abs(path.T[rows] - path.T[turn.row]).max() < 1e-8
+    assert np.abs(path.T[turn.row + turn.steps + 1] - path.T[turn.row]).max() > 1e-6
+    assert np.abs(path.T[turn.row - 1] - path.T[turn.row]).max() > 1e-6
+    np.testing.assert_allclose(path.q[turn.row + turn.steps], turn.end, atol=1e-9)
+
+
+def test_a_turn_has_its_mark_and_each_event_its_own_words():
+    path = path_through(PUMA, *MID, 10, Manner("line"))
+    track = track_of(path)
+    words = [*(event.words for event in path.events), path.turns[0].words]
+    assert [word for _, word in track.marks] == words
+    assert track.marks[-1][0] == path.turns[0].row
+    notes = PathReport(PathRecords(path, PUMA.units))
+    told = [*notes.event_notes(), *notes.turn_notes()]
+    assert all(said.endswith(word) for said, word in zip(told, words, strict=True))
+    assert sorted([*told, *notes.end_notes()]) == sorted(notes.notes())
+
+
+@pytest.mark.parametrize("rate", [7.0, 10.3])
+def test_the_end_of_a_first_turn_is_at_the_first_pose_between_rows_too(rate):
+    home = PUMA.poses["home"]
+    T = robokin.forward_kinematics(PUMA, home)
+    T[:3, 3] = [-0.3, 0.7, 0.2]
+    timing = Timing(motion_limits(PUMA, None, None), duration=3.0, rate=rate)
+    path = path_through(PUMA, home, [Goal(T=T)], 10, Manner("line", timing=timing))
+    (turn,) = path.turns
+    assert turn.joints == [4, 6] and turn.steps == path.reorientation and turn.row == 0
+    np.testing.assert_allclose(robokin.forward_kinematics(PUMA, turn.end), path.T[0], atol=1e-9)
+    assert np.abs(path.T[: turn.steps + 1] - path.T[0]).max() < 1e-9 < np.abs(path.T[turn.steps + 1] - path.T[0]).max()
+
+
+def test_a_first_turn_is_no_part_of_what_a_branch_follows():
+    home = PUMA.poses["home"]
+    ends = [robokin.forward_kinematics(PUMA, home) for _ in range(2)]
+    ends[0][:3, 3], ends[1][:3, 3] = [-0.3, 0.7, 0.2], [0.6, -0.4, 0.3]
+    path = path_through(PUMA, home, [Goal(T=T) for T in ends], 5, Manner("line"))
+    assert path.turns and not path.complete
+    (own,) = [one for one in path.branches if one.chosen]
+    # A turn and two lines: three pieces of the path's fraction, two of that of the lines.
+    assert own.fraction == pytest.approx((3.0 * path.fraction - 1.0) / 2.0)
+    assert own.fraction < path.branches[0].fraction < path.fraction
+
+
+def test_the_rows_of_a_path_that_ends_early_are_counted_from_the_whole():
+    goals = [Goal(T=robokin.transform(text)) for text in ("Trans(3, 0, 0)", "Trans(0.5, 0.5, 0)")]
+    path = path_through(PLANAR, np.radians([30, 40]), goals, 20, Manner("line"))
+    whole = path_through(PLANAR, np.radians([30, 40]), goals[1:] * 2, 20, Manner("line"))
+    assert not path.complete and path.steps == whole.steps == 40
+    np.testing.assert_array_equal(path.t, whole.t[: len(path)])
+    np.testing.assert_allclose(path.s, whole.s[: len(path)], atol=1e-15)

@@ -236,7 +236,9 @@ def test_a_duration_is_of_the_whole_line(rate):
     assert slow.complete and slow.t[-1] == pytest.approx(4.0) and slow.duration == pytest.approx(4.0)
     assert np.abs(slow.velocity).max() <= 0.5 * least.duration / 4.0 * 1.001  # all pieces are slower by the same factor
     with pytest.raises(InputError, match=f"expected at least {least.duration:.6g} s within the limits"):
-        path_through(PLANAR, start, goals, 50, Manner("line", timing=Timing(bounds, duration=0.99 * least.duration)))
+        path_through(
+            PLANAR, start, goals, 50, Manner("line", timing=Timing(bounds, duration=0.99 * least.duration, rate=rate))
+        )
 
 
 @pytest.mark.parametrize(("duration", "rate"), [(4.0, 10.0), (4.0, 7.3), (None, 31.0), (2.0, 0.1), (2.0, 100.0)])
@@ -365,3 +367,15 @@ def test_wrong_arguments_are_told(options, said):
 def test_points_that_do_not_move(passing):
     path = trajectory(PLANAR, [[0.3, 0.4]] * 3, passing=passing, max_velocity=1.0, steps=4)
     assert path.duration == 1.0 and np.array_equal(path.q, [[0.3, 0.4]] * 5) and not path.velocity.any()
+
+
+@pytest.mark.parametrize("rate", [None, 37.0])
+@pytest.mark.parametrize("steps", [7, 60])
+def test_limits_hold_at_every_row_of_a_line(steps, rate):
+    start = np.radians([40, 60, 0])
+    robot = robokin.load("planar3r")
+    T = robokin.forward_kinematics(robot, np.radians([120, 100, -60]))
+    bounds = motion_limits(robot, 1.0, 2.0)
+    path = path_through(robot, start, [Goal(T=T)], steps, Manner("line", timing=Timing(bounds, rate=rate)))
+    assert path.complete
+    assert np.abs(path.velocity).max() <= 1.0 + 1e-8 and np.abs(path.acceleration).max() <= 2.0 + 1e-8

@@ -134,9 +134,8 @@ def command(
     if plot is not None:
         from robokin.pictures.drawn_path import path_picture
 
-        picture = path_picture(
-            path, units, plot.rpartition(".")[2].lower(), [*answer.notes()], words=description.words(robot)
-        )
+        told = [*answer.event_notes(), *answer.turn_notes(), *answer.end_notes()]
+        picture = path_picture(path, units, plot.rpartition(".")[2].lower(), told, words=description.words(robot))
         with sink(plot, "--plot") as stream:
             stream.write(picture)
     with sink(output.file) as stream:
