@@ -39,7 +39,7 @@ const robot = () => original.id && text() === original.text ? original.id : FILE
 const quoted = (word) => /^[\w.,:=+@%/-]+$/.test(word) ? word : `"${word.replace(/["\\$`]/g, "\\$&")}"`;
 
 let later = 0;
-function changed() { clearTimeout(later); later = setTimeout(read, 350); }
+function changed() { aged(); clearTimeout(later); later = setTimeout(read, 350); }
 async function read() {
   const given = text(), found = await ask("written", FILE, given);
   if (given !== text()) return;
@@ -50,6 +50,7 @@ async function read() {
     return item;
   }));
   marks(found.errors);
+  aged();
   if (!valid) return;
   if (kind !== found.kind) { kind = found.kind; tabs(); }
   await picture();
@@ -86,7 +87,11 @@ setInterval(() => {
 const numbers = ["robot", "tree"];
 const q = {id: "q", label: "Joint values q (they follow the sliders until you type)"};
 const target = {id: "target", label: "Target: an expression, X,Y,Z, or options such as --xy 0.5,0.2 --phi 30"};
-const aim = (v) => !v ? "" : /^\s*-{1,2}[a-z]/.test(v) ? " " + v.trim() : ` --pose ${quoted(v.trim())}`;
+const aim = (v) => {
+  if (!v || /^\s*-{1,2}[a-z]/.test(v)) return v ? " " + v.trim() : "";
+  const commas = v.replace(/\(.*?\)/g, "").split(",").length - 1;
+  return commas && !v.includes("[") && !/^\s*[A-Z]/.test(v) ? ` --xy${commas > 1 ? "z" : ""}=${quoted(v.replace(/\s/g, ""))}` : ` --pose ${quoted(v.trim())}`;
+};
 const values = (v) => v ? ` --q=${quoted(v.replace(/\s/g, ""))}` : "";
 const QUESTIONS = {
   pose: {title: "Pose", kinds: numbers, fields: [q], line: (v) => `fk ${robot()}${values(v.q)}`},
@@ -136,7 +141,7 @@ async function fromSliders(form) {
   const found = await ask("run", `fk ${robot()}${values(pose)} --json`, 80);
   if (found.status) return;
   const document = JSON.parse(found.text), at = document.pose;
-  if (!at) return;
+  if (!at || field.dataset.own) return;
   const list = (v) => v.map((x) => String(+x.toFixed(9))).join(",");
   field.value = `--xyz=${list(at.position)} --rpy=${list(at.rpy)}`;
   shown();
@@ -207,7 +212,18 @@ function fitting() {
 }
 const given = () => Object.fromEntries(new FormData($("form")));
 const line = () => QUESTIONS[tab].line(given());
-function shown() { if (tab !== "lectures") $("command").textContent = `robokin ${line()}`; }
+function shown() {
+  if (tab === "lectures") return;
+  $("command").textContent = `robokin ${line()}`;
+  aged();
+}
+// An answer to another question or description than those that stand there now says so; a pose is answered anew by itself.
+let answered = {line: "", text: ""};
+function aged() {
+  if (tab === "lectures") return;
+  const words = line(), other = answered.line !== words || (words.includes(FILE) && answered.text !== text());
+  $("answer").classList.toggle("old", other && $("answer").textContent !== "" && (tab !== "pose" || !valid));
+}
 let waiting = 0;
 function soon() { shown(); clearTimeout(waiting); waiting = setTimeout(answer, 120); }
 const columns = () => {
@@ -219,14 +235,16 @@ $("form").addEventListener("submit", (event) => { event.preventDefault(); answer
 
 async function answer() {
   if (tab === "lectures") return;
-  const mine = ++asked, words = line(), view = QUESTIONS[tab].drawn?.(given());
+  const mine = ++asked, words = line(), asking = {line: words, text: text()}, view = QUESTIONS[tab].drawn?.(given());
   shown();
   $("answer").classList.add("busy");
   const slow = setTimeout(() => { $("stop").hidden = false; }, 1500);
   try {
     const found = await ask("run", words, columns());
     if (mine !== asked) return;
+    answered = asking;
     show(found, $("answer"));
+    aged();
     Object.assign($("answer").dataset, {of: `robokin ${words}`, status: found.status});
     $("note").textContent = found.note;
     files(found.files);

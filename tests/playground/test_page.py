@@ -207,6 +207,30 @@ def test_questions_are_answered_and_marked(address):
     assert run("fill('words', 'ls'); await send(); return $('answer').dataset.status") == "2"
 
 
+def test_an_answer_to_what_stood_there_before_says_so(address):
+    run = opened(address, "#r=planar2r&q=10,20")
+    old = "$('answer').classList.contains('old')"
+    run("await until(() => text('command').includes('10,20')); await settled();")
+    assert run(f"return {old}") is False
+    run("await choose('solutions'); fill('target', '1,0.5'); await send();")
+    assert run(f"return [text('command'), {old}]") == ["robokin ik planar2r --xy=1,0.5", False]
+    assert run(f"fill('target', '1,0.6'); return {old}") is True
+    assert run(f"fill('target', '1,0.5'); return {old}") is False
+    edit = "playground.setText(playground.text().replace('a1: 1', 'a1: 2')); await playground.read(); "
+    assert run(f"{edit} return [text('command'), {old}]") == ["robokin ik robot.yaml --xy=1,0.5", True]
+    assert run(f"await send(); return {old}") is False
+
+
+def test_a_place_is_a_target_as_its_label_says(address):
+    run = opened(address)
+    run("await choose('solutions');")
+    said = "return text('command')"
+    assert run(f"fill('target', '500, 100, 300'); {said}") == "robokin ik puma560 --xyz=500,100,300"
+    assert run(f"fill('target', '-500,2*pi,sqrt(2)'); {said}") == 'robokin ik puma560 --xyz="-500,2*pi,sqrt(2)"'
+    for whole in ("Trans(500,100,300) RPY(0,0,90)", "Matrix([[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]])"):
+        assert run(f"fill('target', '{whole}'); {said}") == f'robokin ik puma560 --pose "{whole}"'
+
+
 def test_a_lecture_runs_where_it_stands(address):
     run = opened(address)
     run("await choose('lectures'); await until(() => document.querySelector('.step button'));")
