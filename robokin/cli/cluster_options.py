@@ -67,7 +67,12 @@ def working_on(address: str | None) -> Iterator[None]:
         yield
         return
     from robokin.jobs.cluster import cluster
+    from robokin.jobs.ordered_map import WorkerError
     from robokin.unfinished_work import in_order
 
-    with in_order(), cluster(address):
+    with in_order(), contextlib.ExitStack() as held:
+        try:
+            held.enter_context(cluster(address))
+        except (InputError, WorkerError) as error:
+            raise type(error)(f"--cluster: {error}") from None
         yield

@@ -274,7 +274,10 @@ def test_columns_that_are_not_there_and_keys_that_are_none_are_said(call, sheet,
     refused(call("check", "sheet", sheet / "key", "-i", tmp_path / "a.csv"), "expected quantity as well")
     refused(call("check", "sheet", sheet, "-i", tmp_path / "a.csv"), "found no sheet.json")
     refused(call("check", "sheet", sheet / "key"), "--input is missing")
-    refused(call("check", "sheet", sheet / "key", "-i", tmp_path / "a.csv", "--student", "eve"), "found 0 students")
+    refused(
+        call("check", "sheet", sheet / "key", "-i", tmp_path / "a.csv", "--student", "eve"),
+        "--student: found 0 students",
+    )
     for name, text in (
         ("sheet.json", "[]"),
         ("sheet.json", "{"),

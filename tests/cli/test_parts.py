@@ -340,6 +340,8 @@ def test_a_bad_row_ends_in_its_sentence_and_keeps_what_is_whole(call, tmp_path, 
         (["workspace", "puma560", "-o", "a.csv", "--part-rows", "5"], "expected --output FOLDER/"),
         (["workspace", "puma560", "-o", "a.parquet", "--resume"], "expected a folder of parts"),
         (["workspace", "puma560", "--cluster", "local:2", "--cores", "2"], "exclude each other"),
+        (["workspace", "puma560", "--at", "1,2,3", "--cluster", "local:x"], "--cluster: found the cluster 'local:x'"),
+        (["workspace", "puma560", "--at", "1,2,3", "--cluster", ""], "--cluster: found no address"),
         (["check", "fk", "puma560", "--q", "home", "--expect", "1,2,3", "--cluster", "local:2"], "goes with --input"),
     ],
 )

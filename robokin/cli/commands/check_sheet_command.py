@@ -52,6 +52,11 @@ def command(
         raise InputError("--student and --metadata exclude each other, expected one of them")
     known = read_sheet_key(key)
     names = submitters(metadata) if metadata is not None else [[student]] if student is not None else None
-    own = None if names is None else whose(known, names)
+    own = None
+    if names is not None:
+        try:
+            own = whose(known, names)
+        except InputError as error:
+            raise InputError(f"{'--student' if metadata is None else '--metadata'}: {error}") from None
     tasks = sheet_tasks(known, input, say, follow=follow, student=own)
     return way.deliver(sheet_report(known.name, known.exercises, tasks, rules.rules))

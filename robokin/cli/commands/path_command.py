@@ -34,7 +34,7 @@ def command(
     robot: RobotArgument,
     *,
     from_: Annotated[
-        str | None, option("--from", "Q", "Where it starts: joint values, or a named pose.", named_poses)
+        str | None, option("--from", "Q", "Where it starts: joint values, a named pose, or a transform.", named_poses)
     ] = None,
     to: Annotated[
         list[str] | None,
