@@ -38,10 +38,10 @@ function setText(value) { if (editor) { editor.setValue(value, -1); } else $("ya
 const robot = () => original.id && text() === original.text ? original.id : FILE;
 const quoted = (word) => /^[\w.,:=+@%/-]+$/.test(word) ? word : `"${word.replace(/["\\$`]/g, "\\$&")}"`;
 
-let later = 0;
+let later = 0, saved = "";  // saved: what robot.yaml holds
 function changed() { aged(); clearTimeout(later); later = setTimeout(read, 350); }
 async function read() {
-  const given = text(), found = await ask("written", FILE, given);
+  const given = saved = text(), found = await ask("written", FILE, given);
   if (given !== text()) return;
   valid = found.valid;
   $("mistakes").replaceChildren(...found.errors.map((mistake) => {
@@ -235,7 +235,7 @@ $("form").addEventListener("submit", (event) => { event.preventDefault(); answer
 
 async function answer() {
   if (tab === "lectures") return;
-  const mine = ++asked, words = line(), asking = {line: words, text: text()}, view = QUESTIONS[tab].drawn?.(given());
+  const mine = ++asked, words = line(), asking = {line: words, text: saved}, view = QUESTIONS[tab].drawn?.(given());
   shown();
   $("answer").classList.add("busy");
   const slow = setTimeout(() => { $("stop").hidden = false; }, 1500);
