@@ -18,6 +18,7 @@ All arrays inside have the candidates last, (…, s), and each operation is on a
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -166,13 +167,19 @@ def regular(loop: Loop, values: NDArray[Any], residual: Array, least: float = RE
     return answer
 
 
+@cache
+def _weights() -> Array:
+    """What sines, cosines and imaginary parts count (3, 6) in the sum by which candidates are sorted."""
+    return np.random.default_rng(5).uniform(0.5, 1.5, (3, 6))
+
+
 def distinct(loop: Loop, index: Index, values: NDArray[Any], apart: float | Array = APART) -> Flags:
     """(s,) true for one of those candidates of one target that are nearer than `apart` to each other in every joint.
 
     apart: for all, or (s,) for each: of two the greater counts [rad | size].
     """
     values = np.asarray(values, dtype=np.complex128)
-    weights = np.random.default_rng(5).uniform(0.5, 1.5, (3, 6))
+    weights = _weights()
     turning = loop.revolute
     real, imaginary = values.real, values.imag
     key: Array = np.sin(real[:, turning]) @ weights[0, turning] + np.cos(real[:, turning]) @ weights[1, turning]

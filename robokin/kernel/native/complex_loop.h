@@ -39,10 +39,9 @@ static inline void exchanged(Bits which, Part *a, Part *b) {
 static inline Part greater(Part a, Part b) { return chosen(a > b, a, b); }
 
 static inline Part roots(Part x) {
-    Part out;
     for (int l = 0; l < 4; l++)
-        out[l] = sqrt(x[l]);
-    return out;
+        x[l] = sqrt(x[l]);
+    return x;
 }
 
 /* Cosines and sines of complex angles. */

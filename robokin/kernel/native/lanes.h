@@ -23,6 +23,11 @@
 #pragma fp_contract(off)
 #endif
 
+/* Fours of numbers are handed over within this file alone: no other file's convention is broken. */
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
 #define LANES 8
 #define FARTHEST 1e5
 
