@@ -15,6 +15,8 @@ import subprocess
 import sys
 import sysconfig
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path, PureWindowsPath
 from typing import Any
 
@@ -130,10 +132,14 @@ def with_gnu(
     wanted = {name: includes if name in MODULE else [] for name in [*MODULE, *PLAIN]}
     if "__x86_64__" in run([*compiler, *flags, "-dM", "-E", "-x", "c", os.devnull], environment):
         wanted |= {"module.c": [*includes, "-DROBOKIN_AVX2"], "lanes_avx2.c": ["-mavx2"]}
-    objects = []
-    for name, more in wanted.items():
-        objects.append(str(kernel.with_name(f"{name}.o")))
-        run([*compiler, *flags, *more, "-c", str(sources / name), "-o", objects[-1]], environment)
+    objects = [str(kernel.with_name(f"{name}.o")) for name in wanted]
+    commands = [
+        [*compiler, *flags, *more, "-c", str(sources / name), "-o", made]
+        for (name, more), made in zip(wanted.items(), objects, strict=True)
+    ]
+    # The files of vectors take most of the time, each for itself; they begin at once.
+    with ThreadPoolExecutor(os.cpu_count()) as at_once:
+        list(at_once.map(partial(run, environment=environment), reversed(commands)))
     shared = ["-bundle", "-undefined", "dynamic_lookup"] if sys.platform == "darwin" else ["-shared"]
     libraries = [f"-L{Path(sys.base_prefix) / 'libs'}", "-lpython3"] if WINDOWS else ["-lm"]
     run([*compiler, *flags, *shared, *objects, "-o", str(kernel), *libraries], environment)
