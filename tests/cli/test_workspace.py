@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from pictures.page_tables import unpacked
 from sweeps import sweep
 
 from .conftest import invoke, poses_of, refused
@@ -300,9 +301,13 @@ def test_a_page_shows_a_map_of_orientations_and_the_figures(freedom):
     assert data["title"] == "Three-link planar arm"
     assert "area" in dict(data["figures"])
     (plate,) = data["plates"]
-    cells = np.array(plate["cells"])
-    ring = np.abs(np.hypot(cells[:, 0], cells[:, 1]) - 1.0) < 0.2
-    assert np.all(cells[ring, 2] == 1.0)
+    parts = unpacked(plate["cells"])
+    x, y = (
+        low + step * np.arange(n)
+        for low, step, n in zip(*(plate["cells"][k] for k in ("low", "step", "shape")), strict=True)
+    )
+    radius = np.hypot(*np.meshgrid(x, y, indexing="ij"))
+    assert np.all(parts[(np.abs(radius - 1.0) < 0.2)] == 254)
 
 
 def test_without_matplotlib_nothing_is_worked_out_before_the_sentence(call, monkeypatch, tmp_path):

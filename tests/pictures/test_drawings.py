@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from pictures.page_tables import unpacked
 
 from robokin.errors import InputError
 from robokin.pictures.outline import trace
@@ -52,12 +53,6 @@ def svg(picture, matplotlib):
 def data_of(document):
     (text,) = re.findall(r'<script id="data" type="application/json">(.*?)</script>', document.decode(), re.DOTALL)
     return json.loads(text)
-
-
-def unpacked(table):
-    """The bytes of a page's table from its runs: a byte, and how many of it."""
-    runs = np.frombuffer(base64.b64decode(table["runs"]), dtype=np.uint8).reshape(-1, 2)
-    return np.repeat(runs[:, 0], runs[:, 1]).reshape(table["shape"])
 
 
 def test_a_png_is_a_png_of_some_size(picture, matplotlib):
