@@ -35,13 +35,18 @@ postMessage({progress: ""});
 """
 
 
+ASKED = threading.Lock()
+
+
 class Served(SimpleHTTPRequestHandler):
     """The page's files, and answers to its calls."""
 
     def do_POST(self):
         call, args = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
         try:
-            answer = {"result": getattr(engine, call)(*args)}
+            # One after the other, as the page's own worker: a page that was left may still be asking.
+            with ASKED:
+                answer = {"result": getattr(engine, call)(*args)}
         except Exception as error:
             answer = {"error": str(error)}
         body = json.dumps(answer, default=lambda held: {"bytes": base64.b64encode(held).decode()}).encode()
