@@ -16,7 +16,7 @@ import sys
 import sysconfig
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from itertools import repeat
 from pathlib import Path, PureWindowsPath
 from typing import Any
 
@@ -139,7 +139,7 @@ def with_gnu(
     ]
     # The files of vectors take most of the time, each for itself; they begin at once.
     with ThreadPoolExecutor(os.cpu_count()) as at_once:
-        list(at_once.map(partial(run, environment=environment), reversed(commands)))
+        list(at_once.map(run, reversed(commands), repeat(environment)))
     shared = ["-bundle", "-undefined", "dynamic_lookup"] if sys.platform == "darwin" else ["-shared"]
     libraries = [f"-L{Path(sys.base_prefix) / 'libs'}", "-lpython3"] if WINDOWS else ["-lm"]
     run([*compiler, *flags, *shared, *objects, "-o", str(kernel), *libraries], environment)
