@@ -37,7 +37,7 @@ $(VENV)/release: $(VENV)/dev .ci/requirements/release.txt
 demo: $(VENV)/user ## install, and the pose of the PUMA 560
 	$(BIN)/robokin fk puma560 --q home
 
-test: $(VENV)/dev ## the tests, without the slow laws: four minutes on two cores
+test: $(VENV)/dev ## the tests, without the slow laws: some ten minutes on two cores
 	$(BIN)/$(PYTEST) -m 'not slow'
 
 test-slow: $(VENV)/dev ## the slow laws: whole sweeps over the library and over random arms
@@ -51,7 +51,7 @@ $(VENV)-oldest/installed: .ci/requirements/oldest.txt pyproject.toml
 
 PART := $(addprefix tests/,spatial formats test_imports.py test_installation.py test_fuzz.py mobility/test_screws.py \
   pictures/test_drawings.py cli/test_bad_input.py cli/test_fk.py cli/test_frame.py cli/test_help.py)
-test-oldest: $(VENV)-oldest/installed ## a minute's part of the tests with the lowest versions that pyproject.toml permits
+test-oldest: $(VENV)-oldest/installed ## three minutes' part of the tests with the lowest versions that pyproject.toml permits
 	$(VENV)-oldest/bin/$(PYTEST) $(PART)
 
 test-newest: $(VENV)/release ## the tests with the newest versions that there are today, without the lock

@@ -196,6 +196,7 @@ def sentence(text: str) -> str:
 def printed(*arguments: str) -> str:
     """What a command prints, notes included."""
     screen = io.TextIOWrapper(io.BytesIO(), encoding="utf-8", write_through=True)
+    # The command runs in this process, on a screen of its own; all of it is put back, whatever the command does.
     with mock.patch.multiple(sys, stdout=screen, stderr=screen), mock.patch.dict("os.environ", COLUMNS=COLUMNS):
         run(list(arguments))
     return screen.buffer.getvalue().decode().rstrip()  # type: ignore[attr-defined]

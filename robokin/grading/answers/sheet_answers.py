@@ -127,6 +127,7 @@ def sheet_tasks(
             inside = [*files_inside(place, follow, (".csv",))]
             if not inside:
                 raise InputError(f"{shown(place)}: found no file that ends with .csv in the folder, expected answers")
+            # Not by pathlib: sentences show places as they were typed.
             files += [(os.path.join(place, name), _owner(answers, name), True) for name in inside]  # noqa: PTH118
         else:
             files.append((place, None, False))

@@ -75,7 +75,7 @@ def read_sheet_key(folder: str) -> SheetKey:
 
 
 def _text(folder: str, name: str) -> tuple[str, str]:
-    place = os.path.join(folder, name)  # noqa: PTH118
+    place = os.path.join(folder, name)  # noqa: PTH118 - sentences show it as it was typed
     with open_path(place, "a file of a key") as stream:
         data = read_up_to(stream, place, LARGEST, "a file of a key")
     try:
@@ -93,7 +93,7 @@ def _json(folder: str, name: str) -> tuple[str, Any]:
 
 
 def _robot(folder: str, record: dict[str, Any]) -> tuple[Robot, Tolerance]:
-    place = os.path.join(folder, *str(record["file"]).split("/"))  # noqa: PTH118
+    place = os.path.join(folder, *str(record["file"]).split("/"))  # noqa: PTH118 - as above
     with open_path(place, "a description") as stream:
         robot = read_bytes(stream.read(MAX_BYTES + 1), place)
     if not isinstance(robot, Robot):
