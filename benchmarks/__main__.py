@@ -18,6 +18,7 @@ from benchmarks import (
     pipes,
     plausibility,
     redundant,
+    scale,
     start,
     workspace,
 )
@@ -35,6 +36,7 @@ BENCHMARKS = {
     "workspace": workspace.run,
     "mobility": mobility.run,
     "start": start.run,
+    "scale": scale.run,
     "plausibility": plausibility.run,
 }
 
