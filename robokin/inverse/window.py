@@ -100,7 +100,8 @@ def _eliminated(analysis: Analysis, T: Array, count: bool) -> tuple[Found, Doubt
     index, q, position, angle, tried, whole = known.many(T)
     found, doubt = Found(index, q, position, angle), Doubt(~whole, np.zeros(len(T), dtype=bool), tried)
     rest = np.flatnonzero(~whole)
-    if not len(rest):
+    if count or not len(rest):
+        # What is not proven is looked at again.
         return found, doubt
     more, again = _by_elimination(analysis, T[rest], count)
     doubt.certain[rest], doubt.candidates[rest] = again.certain, again.candidates

@@ -25,6 +25,7 @@ from robokin.arrays import Array, Complex, Flags, Index
 from robokin.inverse.elimination.complex_newton import complex_refine, on_the_way_out, regular_and_distinct
 from robokin.inverse.elimination.loop import Candidates, Loop
 from robokin.inverse.elimination.loop_newton import closing_at, refine
+from robokin.inverse.elimination.native_elimination import candidates_at
 from robokin.inverse.elimination.raghavan_roth import PERTURBATION, SHIFT, SPLITS, STEEPEST, Elimination
 from robokin.kernel.facts import fact
 
@@ -189,7 +190,8 @@ def rescue_candidates(loop: Loop, splits: list[int], closing: Array) -> Candidat
         if perturbation:
             split = split % SPLITS + SPLITS
         try:
-            parts.append(elimination_of(loop, split, shift, perturbation or PERTURBATION).candidates(closing))
+            solver = elimination_of(loop, split, shift, perturbation or PERTURBATION)
+            parts.append(candidates_at(solver, loop, closing, complex_too=False)[0])
         except np.linalg.LinAlgError:
             continue
     if not parts:
