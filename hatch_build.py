@@ -34,6 +34,7 @@ MODULE = [
     "elimination.c",
     "number_text.c",
     "swivel_forms.c",
+    "told_apart.c",
 ]
 PLAIN = [
     "decimal.c",

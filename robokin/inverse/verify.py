@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from robokin.arrays import Array, Flags, Index
 from robokin.inverse.elimination.loop import Candidates, Loop
 from robokin.inverse.elimination.loop_newton import refine
 from robokin.kernel.chain import Chain
+from robokin.kernel.native_kernel import native
 from robokin.kernel.residual import TargetPoses
 from robokin.model.robot import tolerated
 
@@ -160,6 +162,13 @@ def distinct_and_close(found: Found, revolute: Flags, size: float) -> tuple[Foun
     none = np.empty(0, dtype=np.intp)
     if not len(found):
         return found, none, none
+    if native is not None:
+        off = found.position / size + found.angle
+        q, order, equal, close, listed, equals, near = native.arranged(
+            found.index, found.q, off, revolute, size, CELLS, _weights(len(revolute)), THRESHOLDS
+        )
+        order = order[:listed]
+        return Found(found.index[order], q[order], found.position[order], found.angle[order]), equal[:equals], close[:near]
     q = wrapped(found.q, revolute)
     # -180° is 180°, whatever the last digits say: the order must not depend on them.
     if q.T.min() < HALF_TURN - np.pi:
@@ -181,7 +190,7 @@ def distinct_and_close(found: Found, revolute: Flags, size: float) -> tuple[Foun
 
     # Equal configurations have nearly equal sums of |q|, weighted so that different ones hardly ever do: sorted
     # target by target, only where two neighbours agree is looked at closely.
-    weights = 1.0 + np.modf(np.arange(1.0, len(scaled) + 1.0) * 0.6180339887498949)[0]
+    weights = _weights(len(scaled))
     sums = table(weights @ np.abs(scaled))
     sums.sort(axis=1)
     gaps = np.full(len(sums), np.inf)
@@ -214,6 +223,15 @@ OFF_CENTRE = 0.31
 
 KEY_CELLS = (2.0**14, 2.0**13, 2.0**13, 2.0**13)
 """Parts that the ranges of q1 … q4 are cut into for the order; their product is a whole number below 2⁵³."""
+
+CELLS, THRESHOLDS = np.array(KEY_CELLS), (SAME, CLOSE, HALF_TURN, OFF_CENTRE)
+"""What the native kernel is told of the order and of what is the same."""
+
+
+@cache
+def _weights(n: int) -> Array:
+    """What n joints count in the sums that tell configurations apart."""
+    return np.asarray(1.0 + np.modf(np.arange(1.0, n + 1.0) * 0.6180339887498949)[0])
 
 
 def _ranked(keys: Array, sums: Callable[[], Array]) -> Index:

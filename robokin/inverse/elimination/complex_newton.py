@@ -150,15 +150,25 @@ def regular(loop: Loop, values: NDArray[Any], residual: Array, least: float = RE
     product of the other singular values is at most (|S|² / 5)^(5/2), so that the determinant vouches for most;
     singular values themselves are worked out for the rest.
     """
-    q = np.ascontiguousarray(np.asarray(values, dtype=np.complex128).T)
+    if not len(values):
+        return np.zeros(0, dtype=bool)
+    z = np.ascontiguousarray(values, dtype=np.complex128)
     needed = np.maximum(least, np.sqrt(residual / SURE))
-    answer = (residual <= CLOSED) & np.isfinite(q).all(axis=0)
+    answer = (residual <= CLOSED) & np.isfinite(z).all(axis=1)
     tried = np.flatnonzero(answer)
+    known = native_loop(loop)
+    if native is not None and known is not None:
+        told = native.regular(known, z.view(np.float64), needed)
+        answer &= told > 0.0
+        tried = tried[told[tried] < 0.0]
+        if not len(tried):
+            return answer
+    q = z.T
     for start in range(0, len(tried), BLOCK):
         part = tried[start : start + BLOCK]
         # Values that ran away overflow: their singular values are not asked for.
         with np.errstate(over="ignore", invalid="ignore"):
-            S = jacobian(loop, q[:, part])
+            S = jacobian(loop, np.ascontiguousarray(q[:, part]))
             squared = np.square(np.abs(S)).sum(axis=(1, 2))
             answer[part] = np.abs(_determinants(S)) > needed[part] * (squared / 5.0) ** 2.5
         doubtful = np.flatnonzero(~answer[part] & np.isfinite(squared))
@@ -178,9 +188,14 @@ def distinct(loop: Loop, index: Index, values: NDArray[Any], apart: float | Arra
 
     apart: for all, or (s,) for each: of two the greater counts [rad | size].
     """
-    values = np.asarray(values, dtype=np.complex128)
     weights = _weights()
     turning = loop.revolute
+    if native is not None:
+        z = np.ascontiguousarray(values, dtype=np.complex128).reshape(-1, 6)
+        limit = np.full(len(z), apart)
+        once: Flags = native.each_once(turning, weights, index, z.view(np.float64), limit, COMPARED)
+        return once
+    values = np.asarray(values, dtype=np.complex128)
     real, imaginary = values.real, values.imag
     key: Array = np.sin(real[:, turning]) @ weights[0, turning] + np.cos(real[:, turning]) @ weights[1, turning]
     key += real[:, ~turning] @ weights[0, ~turning] + imaginary @ weights[2]

@@ -57,7 +57,8 @@ typedef struct {
     int advanced##name(const Chain *, Fronts *);                                                                       \
     void refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double *);                             \
     void complex_refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);              \
-    void tracked##name(const Chain *, const double *, const double *, const double *, ptrdiff_t, double *, double *);
+    void tracked##name(const Chain *, const double *, const double *, const double *, ptrdiff_t, double *, double *); \
+    void regulars##name(const Chain *, const double *, const double *, ptrdiff_t, double *);
 
 DECLARED(_base)
 DECLARED(_avx2)

@@ -307,3 +307,50 @@ static double least_singular(const Chain *loop, const ComplexGroup *g, int l) {
             sum += creal(A[r][j]) * creal(A[r][j]) + cimag(A[r][j]) * cimag(A[r][j]);
     return sum > 0.0 && sum < 1e300 ? 1.0 / sqrt(sum) : 0.0;
 }
+
+/* Whether the least singular value of S at complex values (m, 6) is above what is needed (m,): 1, 0, or -1 for doubt.
+
+   The product of the other five is at most (|S|^2 / 5)^(5/2); 1 / |S^-1| is at most the least one, and a root of six
+   times that at least.
+*/
+void NAMED(regulars)(const Chain *loop, const double *values, const double *needed, ptrdiff_t m, double *answer) {
+    for (ptrdiff_t first = 0; first < m; first += 4) {
+        int count = m - first < 4 ? (int)(m - first) : 4, open = 0;
+        Complex q[6], S[6][6], other[6][6], X[4][3], identity[6][6];
+        Part size, squared = {0.0}, inverse = {0.0};
+        for (int l = 0; l < 4; l++)
+            for (int i = 0; i < 6; i++) {
+                const double *z = values + 12 * (first + (l < count ? l : 0)) + 2 * i;
+                q[i].re[l] = z[0];
+                q[i].im[l] = z[1];
+            }
+        complex_followed(loop, q, S, X, &size);
+        for (int i = 0; i < 6; i++)
+            for (int r = 0; r < 6; r++)
+                squared += absolute_squared(S[i][r]);
+        memcpy(other, S, sizeof S);
+        Part determinant = roots(absolute_squared(complex_solved(other, NULL, 0)));
+        for (int l = 0; l < count; l++) {
+            double others = squared[l] / 5.0, *to = answer + first + l;
+            *to = determinant[l] > needed[first + l] * (others * others * sqrt(others)) ? 1.0
+                  : is_number(squared[l])                                               ? -1.0
+                                                                                        : 0.0;
+            open |= *to < 0.0;
+        }
+        if (!open)
+            continue;
+        memset(identity, 0, sizeof identity);
+        for (int i = 0; i < 6; i++)
+            identity[i][i].re = ONE;
+        complex_solved(S, identity, 6);
+        for (int i = 0; i < 6; i++)
+            for (int r = 0; r < 6; r++)
+                inverse += absolute_squared(identity[i][r]);
+        for (int l = 0; l < count; l++) {
+            double least = 1.0 / sqrt(inverse[l]), *to = answer + first + l;
+            /* Near rounding the inverse is not known well enough. */
+            if (*to < 0.0 && least > 1e-12)
+                *to = 0.99 * least > needed[first + l] ? 1.0 : 2.5 * least < needed[first + l] ? 0.0 : -1.0;
+        }
+    }
+}

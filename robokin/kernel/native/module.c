@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* As robokin.kernel.native_module expects it. */
-#define INTERFACE 7
+#define INTERFACE 8
 
 /* Under which name a robot's facts hold its chain. */
 #define KEPT_CHAIN "chain at once"
@@ -23,12 +23,12 @@
 #define MOST_DIMENSIONS 64
 
 static const Lanes base = {poses_base, frames_base, jacobians_base, errors_base, descended_base, corrected_base, advanced_base,
-                           refined_base, complex_refined_base, tracked_base, solution_base, solutions_base, sides_base,
+                           refined_base, complex_refined_base, tracked_base, regulars_base, solution_base, solutions_base, sides_base,
                            prepared_elimination_base, eliminated_base, tried_candidates_base,
                            listed_elimination_base};
 #ifdef ROBOKIN_AVX2
 static const Lanes avx2 = {poses_avx2, frames_avx2, jacobians_avx2, errors_avx2, descended_avx2, corrected_avx2, advanced_avx2,
-                           refined_avx2, complex_refined_avx2, tracked_avx2, solution_avx2, solutions_avx2, sides_avx2,
+                           refined_avx2, complex_refined_avx2, tracked_avx2, regulars_avx2, solution_avx2, solutions_avx2, sides_avx2,
                            prepared_elimination_avx2, eliminated_avx2, tried_candidates_avx2,
                            listed_elimination_avx2};
 #endif
@@ -478,6 +478,7 @@ static PyMethodDef *const more_methods[] = {
     elimination_methods,
     number_text_methods,
     swivel_methods,
+    told_apart_methods,
     NULL,
 };
 

@@ -37,6 +37,7 @@ typedef struct {
     void (*refined)(const Chain *, const double *, double *, ptrdiff_t, int, double *);
     void (*complex_refined)(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);
     void (*tracked)(const Chain *, const double *, const double *, const double *, ptrdiff_t, double *, double *);
+    void (*regulars)(const Chain *, const double *, const double *, ptrdiff_t, double *);
     int (*solution)(const Form *, const double *, const Wanted *, Solutions *);
     void (*solutions)(const Form *, const double *, ptrdiff_t, const Wanted *, Solutions *, ptrdiff_t *, ptrdiff_t *,
                       unsigned char *);
@@ -49,7 +50,7 @@ typedef struct {
 
 /* Methods of the other files. */
 extern PyMethodDef closed_form_methods[], descent_methods[], elimination_methods[], number_text_methods[],
-    swivel_methods[];
+    swivel_methods[], told_apart_methods[];
 
 /* The set in use. */
 extern Lanes lanes;
