@@ -39,10 +39,14 @@ from robokin.inverse.verify import CLOSES, Found, distinct, merged
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import limited
 from robokin.kernel.facts import fact
+from robokin.kernel.native_kernel import handle, native
 from robokin.kernel.residual import distance_and_angle, error_and_jacobian
 
 FINE = 6
 """Steps by singular values thereafter: next to singular poses normal equations lose half of the digits."""
+
+EXACT, LONGEST = 1e-14, 0.1
+"""Error [size and rad] at which they end, and the longest of them [rad | size]."""
 
 LEAST = 1e-9
 """Singular values below this part of the greatest are left out of such a step: what the error has of their direction
@@ -284,23 +288,32 @@ def closing_at_last(chain: Chain, T: Array, index: Index, q: Array, size: float)
     off = np.max(np.abs(error), axis=1)
     near = off < NEARLY
     index, q, error = index[near], q[near], error[near]
+    known = handle(chain)
+    if native is None or known is None or chain.n > native.most_moved:
+        finely_closed(chain, T[index], q, error, size)
+    else:
+        q, error = native.finely_closed(known, T[index], q, error, size, FINE, LONGEST, LEAST, EXACT)
+    position, angle = distance_and_angle(error)
+    closes = (position <= CLOSES) & (angle <= CLOSES)
+    return Found(index, q, position * size, angle).pick(closes)
+
+
+def finely_closed(chain: Chain, T: Array, q: Array, error: Array, size: float) -> None:
+    """Steps by singular values from q (s, n) towards T (s, 4, 4), with the errors (s, 6); both are brought on."""
     scale = np.where(chain.revolute, 1.0, size)
     for _ in range(FINE):
-        open_ = np.flatnonzero(np.max(np.abs(error), axis=1) > 1e-14)
+        open_ = np.flatnonzero(np.max(np.abs(error), axis=1) > EXACT)
         if not len(open_):
             break
-        here, J = error_and_jacobian(chain, T[index[open_]], q[open_], size)
+        here, J = error_and_jacobian(chain, T[open_], q[open_], size)
         U, S, Vt = np.linalg.svd(J, full_matrices=False)
         part = np.einsum("sij,si->sj", U, here)
         part = np.where(LEAST * S[:, :1] < S, part / np.where(S > 0.0, S, 1.0), 0.0)
         step = np.einsum("sj,sjk->sk", part, Vt)
-        ahead = q[open_] + limited(step, 0.1) * scale
-        there, _ = error_and_jacobian(chain, T[index[open_]], ahead, size)
+        ahead = q[open_] + limited(step, LONGEST) * scale
+        there, _ = error_and_jacobian(chain, T[open_], ahead, size)
         better = np.max(np.abs(there), axis=1) < np.max(np.abs(here), axis=1)
         q[open_[better]], error[open_[better]] = ahead[better], there[better]
         error[open_[~better]] = here[~better]
         if not better.any():
             break
-    position, angle = distance_and_angle(error)
-    closes = (position <= CLOSES) & (angle <= CLOSES)
-    return Found(index, q, position * size, angle).pick(closes)

@@ -64,7 +64,7 @@ class Request:
     seed: int
     motions: bool = False
 
-    @property
+    @cached_property
     def own_limits(self) -> Array:
         """(n, 2) the limits that searches stay within; those of a slide beyond every target are none."""
         none = np.tile([-np.inf, np.inf], (self.robot.n, 1))
@@ -77,7 +77,7 @@ class Request:
         """How many solutions are looked for where there are infinitely many."""
         return MOST if self.most is None or self.most > MOST_SOUGHT else self.most
 
-    @property
+    @cached_property
     def middle(self) -> Array:
         """(n,) where a joint is put that may be anywhere [rad | m]: at `near`, or at zero, or amid its limits."""
         low, high = self.robot.limits.T

@@ -9,6 +9,7 @@ Degenerate case. Where N are still not known nothing is said: such a target is l
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,7 @@ BESIDE = 6
 """Poses next door that are asked where solutions are missing."""
 
 TWIST = 1e-3
-"""How far away they are [size and rad]: roots are told apart, and Newton's steps lead back."""
+"""How far away they are [size and rad]: far enough that roots are told apart, near enough for Newton's steps."""
 
 ROOM = 8
 """Poses next door that the native kernel has room for."""
@@ -118,6 +119,7 @@ def _numbers(solver: Elimination, loop: Loop, number: int) -> Array:
     return np.concatenate([whole, [loop.size, solver.shift, solver.imaginary], motions[:, :3].ravel()])
 
 
+@cache
 def poses_beside(count: int) -> Array:
     """Motions (count, 4, 4) by a trifle, in any direction."""
     rng = np.random.default_rng(3)

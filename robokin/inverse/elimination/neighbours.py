@@ -18,18 +18,13 @@ from robokin.inverse.analysis import Analysis, General
 from robokin.inverse.elimination.complex_newton import distinct as each_once
 from robokin.inverse.elimination.loop import Candidates, ComplexCandidates
 from robokin.inverse.elimination.loop_newton import determinants, refine
-from robokin.inverse.elimination.native_elimination import candidates_at
+from robokin.inverse.elimination.native_elimination import candidates_at, poses_beside
 from robokin.inverse.elimination.splits import REAL, count_solutions, rescue_candidates
 from robokin.inverse.verify import SAME
 from robokin.inverse.window import CLEARLY_REGULAR
-from robokin.spatial import rotation_from_rpy, transform
-
-TWIST = 1e-3
-"""How far away [size and rad] the solver is asked for poses next door: far enough that roots are told apart, near
-enough for Newton's steps."""
 
 TWISTS = 6
-"""In how many directions."""
+"""Poses next door that the solver is asked for."""
 
 COUNTED_AT = 2
 """At how many of these poses the solutions are counted, the complex ones too."""
@@ -58,10 +53,8 @@ def next_door(analysis: Analysis, T: Array) -> tuple[Index, Array, Flags]:
     six, loop, solver = analysis.six, analysis.loop, analysis.solver
     assert six is not None
     assert loop is not None
-    rng = np.random.default_rng(3)
-    away = transform(rotation_from_rpy(TWIST * rng.normal(size=(TWISTS, 3))), TWIST * rng.normal(size=(TWISTS, 3)))
     closing = loop.closing(T)
-    many = (away[:, None] @ closing[None]).reshape(-1, 4, 4)
+    many = (poses_beside(TWISTS)[:, None] @ closing[None]).reshape(-1, 4, 4)
     whole = np.zeros(len(T), dtype=bool)
     if isinstance(solver, General):
         real, imaginary = candidates_at(solver.first, loop, many, complex_too=not six.virtual)

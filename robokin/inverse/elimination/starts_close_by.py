@@ -9,6 +9,7 @@ Degenerate case. Around some targets fewer than N are known: such a target is le
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -45,6 +46,13 @@ class Beside(NamedTuple):
     values: Complex
 
 
+@cache
+def _around(count: int) -> Array:
+    """Motions (count, 4, 4) to the poses that are tried."""
+    turns, moves = AWAY * np.random.default_rng(13).normal(size=(2, count, 3)) / np.sqrt(3.0)
+    return transform(rotation_from_rpy(turns), moves)
+
+
 class CloseBy:
     """What finds starts close to the targets of a loop that is solved by some solver and has `number` solutions."""
 
@@ -55,8 +63,7 @@ class CloseBy:
         """Two starts for those of the targets L6 (m, 4, 4) that have some."""
         m, N = len(closing), self.number or 0
         tried = TRIED if isinstance(self.solver, Elimination) else TRIED_REAL
-        turns, moves = AWAY * np.random.default_rng(13).normal(size=(2, tried, 3)) / np.sqrt(3.0)
-        around = (transform(rotation_from_rpy(turns), moves)[:, None] @ closing[None]).reshape(-1, 4, 4)
+        around = (_around(tried)[:, None] @ closing[None]).reshape(-1, 4, 4)
         index, values = self._solutions(around)
         whole = np.flatnonzero(np.bincount(index, minlength=len(around)) == N) if N else np.empty(0, dtype=np.intp)
         # The first two poses of each target at which none is missing.

@@ -292,11 +292,20 @@ def _parts_of_moves(tracks: Tracks, k: Index, x: Array, wish: Array) -> tuple[Ar
     """(m,) the greatest move of `moves`, and the length of all moves."""
     own = len(wish)
     gap = np.abs(nearest_turns(tracks, x, wish)[:, :own] - wish)
-    standing = np.abs(nearest_turns(tracks, tracks.points[tracks.first], wish)[:, :own] - wish)
-    least = np.max(np.where(tracks.still[:, :own], standing, 0.0), axis=1, initial=0.0)
-    greatest = np.max(gap, axis=1) - least[k]
+    greatest = np.max(gap, axis=1) - _least_moves(tracks, wish)[k]
     greatest[np.abs(greatest) < STILL] = 0.0
     return greatest, np.linalg.norm(gap, axis=1)
+
+
+def _least_moves(tracks: Tracks, wish: Array) -> Array:
+    """(k,) the greatest move from the wish (own,) of the joints that stand still on each curve."""
+    known = tracks.least_moves
+    if known is None or known[0] is not wish:
+        own = len(wish)
+        standing = np.abs(nearest_turns(tracks, tracks.points[tracks.first], wish)[:, :own] - wish)
+        known = wish, np.max(np.where(tracks.still[:, :own], standing, 0.0), axis=1, initial=0.0)
+        tracks.least_moves = known
+    return known[1]
 
 
 def _nearest_of_pieces(tracks: Tracks, wish: Array) -> tuple[Index, Array]:

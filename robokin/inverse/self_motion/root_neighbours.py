@@ -99,9 +99,10 @@ def repeated(
             multiple = np.maximum(least[mine[:k]], least[mine[k]]) < UNRESOLVED
             same = multiple & (distance < NEIGHBOURS)
             next_to = np.flatnonzero(~same & (distance < NEXT))
-            midway = q[mine[k]] / scale + 0.5 * gap[next_to]
-            off = errors(chain, np.broadcast_to(T[target], (len(midway), 4, 4)), midway, size)[0]
-            next_to = next_to[np.max(np.abs(off), axis=1, initial=0.0) <= MIDWAY]
+            if len(next_to):
+                midway = q[mine[k]] / scale + 0.5 * gap[next_to]
+                off = errors(chain, np.broadcast_to(T[target], (len(midway), 4, 4)), midway, size)[0]
+                next_to = next_to[np.max(np.abs(off), axis=1, initial=0.0) <= MIDWAY]
             if np.any(same) or len(next_to):
                 again.append(mine[k])
             if len(next_to) and not np.any(same):

@@ -102,6 +102,8 @@ class Tracks:
             spread = none
         self.still = spread <= MOVES
         self.moving = self.bounded & ~self.still
+        # What joints that stand still move by from a wish, which is the same for many points.
+        self.least_moves: tuple[Array, Array] | None = None
 
     @property
     def of_points(self) -> Index:

@@ -58,7 +58,10 @@ typedef struct {
     void refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double *);                             \
     void complex_refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);              \
     void tracked##name(const Chain *, const double *, const double *, const double *, ptrdiff_t, double *, double *); \
-    void regulars##name(const Chain *, const double *, const double *, ptrdiff_t, double *);
+    void regulars##name(const Chain *, const double *, const double *, ptrdiff_t, double *);                           \
+    void shortest_of##name(const double *, const double *, ptrdiff_t, int, int, double, double *);                     \
+    void finely_closed##name(const Chain *, const double *, double *, ptrdiff_t, double, int, double, double, double,  \
+                             double *);
 
 DECLARED(_base)
 DECLARED(_avx2)

@@ -184,6 +184,69 @@ end:
     return both;
 }
 
+static PyObject *shortest(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copies[2] = {NULL, NULL}, *dx = NULL;
+    (void)self;
+    if (count != 3) {
+        PyErr_SetString(PyExc_TypeError, "shortest(A, b, zero)");
+        return NULL;
+    }
+    double zero = PyFloat_AsDouble(args[2]);
+    PyArrayObject *A = PyErr_Occurred() ? NULL : doubles(args[0], 3, &copies[0]);
+    PyArrayObject *b = A ? doubles(args[1], 2, &copies[1]) : NULL;
+    if (!b)
+        goto end;
+    npy_intp m = PyArray_DIM(A, 0), rows = PyArray_DIM(A, 1), n = PyArray_DIM(A, 2);
+    if (PyArray_NDIM(A) != 3 || PyArray_NDIM(b) != 2 || PyArray_DIM(b, 0) != m || PyArray_DIM(b, 1) != rows ||
+        n > MOST_MOVED || rows > 7 || !n || !rows) {
+        PyErr_SetString(PyExc_ValueError, "arrays of a descent do not fit each other");
+        goto end;
+    }
+    dx = made(m, n);
+    if (dx)
+        lanes.shortest_of(PyArray_DATA(A), PyArray_DATA(b), m, (int)rows, (int)n, zero, numbers_of(dx));
+end:
+    Py_XDECREF(copies[0]);
+    Py_XDECREF(copies[1]);
+    return dx;
+}
+
+static PyObject *finely_closed(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copies[3] = {NULL, NULL, NULL}, *q = NULL, *error = NULL, *both = NULL;
+    (void)self;
+    if (count != 9) {
+        PyErr_SetString(PyExc_TypeError, "finely_closed(chain, T, q, error, size, steps, longest, zero, enough)");
+        return NULL;
+    }
+    int steps = steps_of(args[5]);
+    double given[4];
+    static const int places[] = {4, 6, 7, 8};
+    for (int i = 0; i < 4 && !PyErr_Occurred(); i++)
+        given[i] = PyFloat_AsDouble(args[places[i]]);
+    const Chain *known = PyErr_Occurred() ? NULL : moved_chain(args[0]);
+    npy_intp m = -1, n = known ? known->n : 0;
+    if (!known)
+        return NULL;
+    const double *T = table(args[1], 16, &m, &copies[0]), *from = T ? table(args[2], n, &m, &copies[1]) : NULL;
+    const double *off = from ? table(args[3], 6, &m, &copies[2]) : NULL;
+    q = off ? made(m, n) : NULL;
+    error = q ? made(m, 6) : NULL;
+    if (!error)
+        goto end;
+    memcpy(numbers_of(q), from, (size_t)(m * n) * sizeof(double));
+    memcpy(numbers_of(error), off, (size_t)(m * 6) * sizeof(double));
+    Py_BEGIN_ALLOW_THREADS
+    lanes.finely_closed(known, T, numbers_of(q), m, given[0], steps, given[1], given[2], given[3], numbers_of(error));
+    Py_END_ALLOW_THREADS
+    both = PyTuple_Pack(2, q, error);
+end:
+    for (int i = 0; i < 3; i++)
+        Py_XDECREF(copies[i]);
+    Py_XDECREF(q);
+    Py_XDECREF(error);
+    return both;
+}
+
 static PyObject *corrected(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     PyObject *copies[4] = {NULL, NULL, NULL, NULL}, *x = NULL, *off = NULL, *J = NULL, *all = NULL;
     (void)self;
@@ -320,6 +383,9 @@ PyMethodDef descent_methods[] = {
      "descended(chain, T, far, x, size, low, high, steps): values (m, n) and errors (m, 6)"},
     {"corrected", (PyCFunction)(void (*)(void))corrected, METH_FASTCALL,
      "corrected(chain, T, normals, extra, most, x, size, settled, zero): (m, n), (m,), (m, 6, n)"},
+    {"shortest", (PyCFunction)(void (*)(void))shortest, METH_FASTCALL, "shortest(A, b, zero): dx (m, n)"},
+    {"finely_closed", (PyCFunction)(void (*)(void))finely_closed, METH_FASTCALL,
+     "finely_closed(chain, T, q, error, size, steps, longest, zero, enough): q (m, n) and errors (m, 6)"},
     {"refined", (PyCFunction)(void (*)(void))refined, METH_FASTCALL,
      "refined(loop, closing, values, steps): values (m, 6) and what they lack (m, 2)"},
     {"complex_refined", (PyCFunction)(void (*)(void))complex_refined, METH_FASTCALL,

@@ -442,3 +442,79 @@ void NAMED(corrected)(const Chain *chain, const double *T, const double *normals
         }
     }
 }
+
+/* The shortest solutions (m, n) of A (m, rows, n) dx = b (m, rows), singular values up to `zero` left out. */
+void NAMED(shortest_of)(const double *A, const double *b, ptrdiff_t m, int rows, int n, double zero, double *dx) {
+    double a[MOST_ROWS][MOST_MOVED][LANES], right[MOST_ROWS][LANES], y[LANES][MOST_MOVED];
+    for (ptrdiff_t first = 0; first < m; first += LANES) {
+        int count = m - first < LANES ? (int)(m - first) : LANES, wanted[LANES];
+        for (int l = 0; l < LANES; l++) {
+            ptrdiff_t from = first + (l < count ? l : 0);
+            wanted[l] = l < count;
+            for (int r = 0; r < rows; r++) {
+                right[r][l] = b[from * rows + r];
+                for (int i = 0; i < n; i++)
+                    a[r][i][l] = A[(from * rows + r) * n + i];
+            }
+        }
+        shortest_steps(rows, n, a, right, zero, wanted, y);
+        for (int l = 0; l < count; l++)
+            memcpy(dx + (first + l) * n, y[l], (size_t)n * sizeof(double));
+    }
+}
+
+/* Steps by singular values from q (m, n) towards T (m, 4, 4), with the errors (m, 6), those there first: see
+   `second_look.closing_at_last`. */
+void NAMED(finely_closed)(const Chain *chain, const double *T, double *q, ptrdiff_t m, double size, int steps,
+                          double longest, double zero, double enough, double *error) {
+    int n = chain->n, c = n < 6 ? n : 6, p = n < 6 ? 6 : n, wide = n > 6;
+    for (ptrdiff_t k = 0; k < m; k++) {
+        double *here = q + n * k, *left = error + 6 * k, J[6 * MOST_MOVED], next[6 * MOST_MOVED];
+        double w[MOST_ROWS][MOST_ROWS], V[MOST_ROWS][MOST_ROWS], e[6], ahead[MOST_MOVED], values[MOST_ROWS];
+        double off = 0.0, greatest = 0.0;
+        for (int r = 0; r < 6; r++)
+            off = fabs(left[r]) > off ? fabs(left[r]) : off;
+        if (off > enough)
+            NAMED(errors)(chain, T + 16 * k, here, 1, size, left, J);
+        for (int step = 0; off > enough && step < steps; step++) {
+            double dx[MOST_MOVED] = {0.0}, length = longest, after = 0.0, before = 0.0;
+            for (int i = 0; i < c; i++)
+                for (int r = 0; r < p; r++)
+                    w[i][r] = wide ? J[n * i + r] : J[n * r + i];
+            jacobi(p, c, w, V);
+            greatest = 0.0;
+            for (int j = 0; j < c; j++) {
+                double squared = 0.0;
+                for (int r = 0; r < p; r++)
+                    squared += w[j][r] * w[j][r];
+                values[j] = sqrt(squared);
+                greatest = values[j] > greatest ? values[j] : greatest;
+            }
+            for (int j = 0; j < c; j++) {
+                double part = 0.0;
+                if (!(values[j] > zero * greatest))
+                    continue;
+                for (int r = 0; r < 6; r++)
+                    part += (wide ? V[j][r] : w[j][r]) * left[r];
+                part /= values[j] * values[j];
+                for (int i = 0; i < n; i++)
+                    dx[i] += part * (wide ? w[j][i] : V[j][i]);
+            }
+            for (int i = 0; i < n; i++)
+                length = fabs(dx[i]) > length ? fabs(dx[i]) : length;
+            for (int i = 0; i < n; i++)
+                ahead[i] = here[i] + dx[i] * (longest / length) * (chain->revolute[i] ? 1.0 : size);
+            NAMED(errors)(chain, T + 16 * k, ahead, 1, size, e, next);
+            for (int r = 0; r < 6; r++) {
+                after = fabs(e[r]) > after ? fabs(e[r]) : after;
+                before = fabs(left[r]) > before ? fabs(left[r]) : before;
+            }
+            if (!(after < before))
+                break;
+            memcpy(here, ahead, (size_t)n * sizeof(double));
+            memcpy(left, e, sizeof e);
+            memcpy(J, next, (size_t)(6 * n) * sizeof(double));
+            off = after;
+        }
+    }
+}

@@ -38,6 +38,9 @@ typedef struct {
     void (*complex_refined)(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);
     void (*tracked)(const Chain *, const double *, const double *, const double *, ptrdiff_t, double *, double *);
     void (*regulars)(const Chain *, const double *, const double *, ptrdiff_t, double *);
+    void (*shortest_of)(const double *, const double *, ptrdiff_t, int, int, double, double *);
+    void (*finely_closed)(const Chain *, const double *, double *, ptrdiff_t, double, int, double, double, double,
+                          double *);
     int (*solution)(const Form *, const double *, const Wanted *, Solutions *);
     void (*solutions)(const Form *, const double *, ptrdiff_t, const Wanted *, Solutions *, ptrdiff_t *, ptrdiff_t *,
                       unsigned char *);
