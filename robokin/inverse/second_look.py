@@ -66,14 +66,15 @@ POSES = 200
 
 
 def look_again(
-    analysis: Analysis, T: Array, found: Found, rest: Array, limits: Array, near: Array | None
+    analysis: Analysis, T: Array, found: Found, rest: Array, limits: Array, near: Array | None, few: Flags
 ) -> tuple[Found, Claims]:
     """All solutions q: (s, window) of targets T: (m, 4, 4) of which some are known, and what may be said of them.
 
-    rest: (window,) where a joint that is free is put; limits: (window, 2); near: (window,) the wish for self-motions.
+    rest: (window,) where a joint that is free is put; limits: (window, 2); near: (window,) the wish for self-motions;
+    few: (m,) at which targets a closed form's equations leave finitely many solutions, but for a wrist's self-motions.
     """
     assert analysis.six is not None
-    own, other, few = analysis.own, _others_of(analysis), few_solutions(analysis, T)
+    own, other = analysis.own, _others_of(analysis)
     sought = _sought(analysis, other, T, near, few)
     index = np.concatenate([part[0] for part in sought.parts])
     q = np.concatenate([part[1] for part in sought.parts])
@@ -203,15 +204,6 @@ def skewed(skew: Skew, T: Array, own: int) -> tuple[Index, Array, Flags, Index]:
     added = np.max(np.abs(half_turns(q[:, own:], np.ones(6 - own, dtype=bool))), axis=1)
     near = added < STANDS
     return index[near], q[near, :own], whole, np.bincount(index[added < AT_REST], minlength=len(T))
-
-
-def few_solutions(analysis: Analysis, T: Array) -> Flags:
-    """(m,) at which targets a closed form's equations leave finitely many solutions, but for a wrist's self-motions."""
-    assert analysis.loop is not None
-    if isinstance(analysis.solver, General):
-        return np.zeros(len(T), dtype=bool)
-    few = analysis.solver.candidates(analysis.loop.closing(T)).few
-    return np.zeros(len(T), dtype=bool) if few is None else np.asarray(few)
 
 
 def followed(

@@ -160,7 +160,8 @@ def complete_solutions(
         return found, claims
     part = found.pick(rows_of(again, count))
     part = Found(np.repeat(np.arange(len(again)), count[again]), part.q, part.position, part.angle)
-    return replaced(found, claims, again, *look_again(analysis, T[again], part, rest, limits, near))
+    few = np.zeros(len(again), dtype=bool) if doubt.few is None else doubt.few[again]
+    return replaced(found, claims, again, *look_again(analysis, T[again], part, rest, limits, near, few))
 
 
 def rows_of(targets: Index, count: Index) -> Index:

@@ -52,12 +52,13 @@ arm's own joints are then polished alone and judged by their own residual."""
 class Doubt:
     """Targets (m,) of which some solution may be missing for `certain`, or only if the arm is near-singular there.
 
-    candidates: (m,) how many were tried.
+    candidates: (m,) how many were tried; few: (m,) of a closed form, what `Candidates.few` says of them.
     """
 
     certain: Flags
     possible: Flags
     candidates: Index
+    few: Flags | None = None
 
 
 def solve_window(analysis: Analysis, T: Array, count: bool = True) -> tuple[Found, Doubt]:
@@ -87,7 +88,8 @@ def _by_closed_form(analysis: Analysis, T: Array) -> tuple[Found, Doubt]:
     # A short lever decides how a joint stands: rounding of it may put what is beyond out of reach.
     unsure = candidates.near if candidates.few is None else candidates.near & ~candidates.few
     lost = unsure & (tried < (candidates.leaves or 0))
-    return found, Doubt(candidates.loose | lost, candidates.near, tried)
+    few = np.zeros(len(T), dtype=bool) if candidates.few is None else candidates.few
+    return found, Doubt(candidates.loose | lost, candidates.near, tried, few)
 
 
 def _eliminated(analysis: Analysis, T: Array, count: bool) -> tuple[Found, Doubt]:

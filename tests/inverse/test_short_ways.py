@@ -75,10 +75,10 @@ def test_what_is_counted_next_door_is_what_all_ways_find(name, rng, monkeypatch)
         assert np.min(np.max(np.abs(gap - 2 * np.pi * np.round(gap / (2 * np.pi))), axis=1)) < 1e-9
     T = T[whole][:6]
     rest = np.zeros(6)
-    counted, claims = look_again(analysis, T, nothing(6), rest, ANYWHERE, None)
+    counted, claims = look_again(analysis, T, nothing(6), rest, ANYWHERE, None, np.zeros(len(T), dtype=bool))
     assert set(claims.basis.tolist()) == {1}
     monkeypatch.setattr("robokin.inverse.elimination.neighbours.COUNTED_AT", 0)
-    followed, claims = look_again(analysis, T, nothing(6), rest, ANYWHERE, None)
+    followed, claims = look_again(analysis, T, nothing(6), rest, ANYWHERE, None, np.zeros(len(T), dtype=bool))
     assert set(claims.basis.tolist()) == {2}
     assert np.array_equal(counted.index, followed.index)
     assert np.allclose(counted.q, followed.q, rtol=0, atol=1e-8)

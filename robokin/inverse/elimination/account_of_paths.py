@@ -138,6 +138,8 @@ def told_apart(
     """
     fine, exact, apart = whole.copy(), values.copy(), _apart(values)
     rows = rows[np.abs(values[rows].imag).max(axis=1, initial=0.0) < NEAR_REAL_AXIS]
+    if not len(rows):
+        return fine, exact, apart
     refined, residual = complex_refine(loop, closing, target[rows], values[rows], FINE_POLISH)
     moved = np.abs(refined - values[rows]).max(axis=1, initial=0.0)
     sure = regular(loop, refined, np.zeros(len(rows)), NEARLY_SINGULAR) & (residual < EXACT) & (moved < MOVED)
@@ -151,7 +153,7 @@ def told_apart(
 
 def judged(loop: Loop, count: int, m: int, tried: list[Ends]) -> Account:
     """The account of m targets from the ends of several starts of `count` paths each."""
-    sound = np.stack([_sound(loop, m, ends) for ends in tried])
+    sound = _sound(loop, m, tried)
     target, values, _ = _united(loop, tried, "regular")
     number = np.bincount(target, minlength=m)
     found = np.stack([_number(m, ends.target, ends.regular) for ends in tried])
@@ -214,16 +216,21 @@ def _united(loop: Loop, tried: list[Ends], which: str) -> tuple[Index, Complex, 
     return target[once], values[once], apart[once]
 
 
-def _sound(loop: Loop, m: int, ends: Ends) -> Flags:
-    """(m,) whether no path was lost, no two ended in the same regular solution, and conjugates are among the ends."""
-    target, values = ends.target[ends.regular], ends.values[ends.regular]
-    number = np.bincount(target, minlength=m)
-    once = distinct(loop, target, values, _apart(values))
-    twice = np.concatenate([target, target])
-    conjugates = np.concatenate([values, values.conj()])
-    both = distinct(loop, twice, conjugates, _apart(conjugates))
-    all_arrive = (np.bincount(ends.target, minlength=m) > 0) & (_number(m, ends.target, ends.lost) == 0)
-    return np.asarray(all_arrive & (number == _number(m, target, once)) & (number == _number(m, twice, both)))
+def _sound(loop: Loop, m: int, tried: list[Ends]) -> Flags:
+    """(k, m) of each of k starts whether no path was lost, no two ended in the same regular solution, and conjugates
+    are among the ends."""
+    k = len(tried)
+    # Each start's targets by numbers of their own, so that all are compared at once.
+    target = np.concatenate([ends.target[ends.regular] + i * m for i, ends in enumerate(tried)])
+    values = np.concatenate([ends.values[ends.regular] for ends in tried])
+    number, apart = np.bincount(target, minlength=k * m), _apart(values)
+    once = distinct(loop, target, values, apart)
+    twice, conjugates = np.tile(target, 2), np.concatenate([values, values.conj()])
+    both = distinct(loop, twice, conjugates, np.tile(apart, 2))
+    every = [np.bincount(ends.target, minlength=m) > 0 for ends in tried]
+    none_lost = [_number(m, ends.target, ends.lost) == 0 for ends in tried]
+    alike = (number == _number(k * m, target, once)) & (number == _number(k * m, twice, both))
+    return np.asarray(np.stack(every) & np.stack(none_lost) & alike.reshape(k, m))
 
 
 def with_seeds_refined(loop: Loop, closing: Array, account: Account) -> Account:

@@ -81,6 +81,8 @@ class Fold(NamedTuple):
 
 def to_fold(chain: Chain, T: Array, q: Array, size: float, least_bend: float = BEND) -> Fold:
     """The folds near seeds q (s, n) [rad | m] for targets T (s, 4, 4) or (4, 4)."""
+    if not len(q):
+        return Fold(q, np.zeros(0), np.zeros(0, dtype=bool))
     scale = scale_of(chain, size)
     T = np.broadcast_to(T, (len(q), 4, 4))
     seeds = q / scale

@@ -150,6 +150,8 @@ def _follow(
 
 def _sharpen(chain: Chain, T: Array, null: Index, size: float, exact: Array, double: Flags) -> None:
     """Bring the multiple roots among `exact` (s, n) to full digits; null: (s,) 0 for what is none."""
+    if not null.any():
+        return
     # Known not to be on curves, also those that bend less may be folds: an elbow beside a nearly singular wrist.
     slight = np.flatnonzero((null == 1) & ~double)
     folds = to_fold(chain, T[slight], exact[slight], size, SLIGHT_BEND)
