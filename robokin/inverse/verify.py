@@ -159,16 +159,22 @@ def distinct_and_close(found: Found, revolute: Flags, size: float) -> tuple[Foun
 
     Where solutions meet the arm is singular, so that nearness is a cheap hint of it.
     """
+    if native is None or not len(found):
+        return told_by_tables(found, revolute, size)
+    off = found.position / size + found.angle
+    q, order, equal, close, listed, equals, near = native.arranged(
+        found.index, found.q, off, revolute, size, CELLS, _weights(len(revolute)), THRESHOLDS
+    )
+    order = order[:listed]
+    kept = Found(found.index[order], q[order], found.position[order], found.angle[order])
+    return kept, equal[:equals], close[:near]
+
+
+def told_by_tables(found: Found, revolute: Flags, size: float) -> tuple[Found, Index, Index]:
+    """`distinct_and_close` in Python."""
     none = np.empty(0, dtype=np.intp)
     if not len(found):
         return found, none, none
-    if native is not None:
-        off = found.position / size + found.angle
-        q, order, equal, close, listed, equals, near = native.arranged(
-            found.index, found.q, off, revolute, size, CELLS, _weights(len(revolute)), THRESHOLDS
-        )
-        order = order[:listed]
-        return Found(found.index[order], q[order], found.position[order], found.angle[order]), equal[:equals], close[:near]
     q = wrapped(found.q, revolute)
     # -180° is 180°, whatever the last digits say: the order must not depend on them.
     if q.T.min() < HALF_TURN - np.pi:

@@ -21,14 +21,17 @@ typedef struct {
     npy_intp target, place;
 } Sorted;
 
+/* Whether a number comes before another one; what is none comes last. */
+static int before(double a, double b) { return a < b || (a == a && b != b); }
+
 static int ordered(const void *first, const void *second) {
     const Sorted *a = first, *b = second;
     if (a->target != b->target)
         return a->target < b->target ? -1 : 1;
-    if (a->key != b->key)
-        return a->key < b->key ? -1 : 1;
-    if (a->sum != b->sum)
-        return a->sum < b->sum ? -1 : 1;
+    if (before(a->key, b->key) || before(b->key, a->key))
+        return before(a->key, b->key) ? -1 : 1;
+    if (before(a->sum, b->sum) || before(b->sum, a->sum))
+        return before(a->sum, b->sum) ? -1 : 1;
     return a->place < b->place ? -1 : a->place > b->place;
 }
 
@@ -152,7 +155,7 @@ static int equal(const Compared *of_all, const double *a, const double *b) {
 
 static int rising(const void *first, const void *second) {
     double a = *(const double *)first, b = *(const double *)second;
-    return a < b ? -1 : a > b;
+    return before(a, b) ? -1 : before(b, a);
 }
 
 /* The key by which a configuration is listed, the sum that decides where keys are equal, and that of absolute values. */
