@@ -18,7 +18,7 @@ import numpy as np
 
 from robokin.arrays import Array, Index
 from robokin.inverse.plain_targets import PlainBlock, kernel_form
-from robokin.inverse.single_answer import FAR, result_of
+from robokin.inverse.single_answer import known_reason, result_of
 from robokin.inverse.solutions import BatchResult, Result
 from robokin.inverse.solve_blocks import BLOCK
 from robokin.inverse.swivel_block import SwivelBlock, swivel_request
@@ -101,10 +101,8 @@ def _batch(request: Request, m: int, parts: list[_Share]) -> BatchResult:
 
     def reason(i: int) -> str | None:
         block, k = place(i)
-        # That the limits are in the way, or the target far off, is known without a search for what is nearest.
-        if block.closing[k] and not block.count[k]:
-            return block.outside(k)
-        return FAR if block.beyond[k] else single(i).reason
+        known = None if block.count[k] else known_reason(block, k)
+        return single(i).reason if known is None else known
 
     analysis = request.analysis
     method = "numeric" if request.method == "numeric" else analysis.method

@@ -20,6 +20,7 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.errors import InputError
 from robokin.inverse.analysis import Task
+from robokin.inverse.later_fields import changed
 from robokin.inverse.solutions import BatchResult, Result
 from robokin.inverse.verify import residuals
 from robokin.kinematics.forward import forward_kinematics
@@ -109,7 +110,7 @@ def with_turn_counts(robot: Robot, batch: BatchResult) -> BatchResult:
     def single(i: int) -> Result:
         result = batch[i]
         q = np.array([solution.q for solution in result.solutions]).reshape(-1, robot.n)
-        return replace(result, counts={**result.counts, "turns": sum(count_equivalents(robot, q))})
+        return changed(result, counts={**result.counts, "turns": sum(count_equivalents(robot, q))})
 
     return replace(batch, single=single)
 

@@ -24,8 +24,9 @@ from robokin.arrays import Array, Index
 from robokin.errors import InputError
 from robokin.inverse.analysis import analysis_of
 from robokin.inverse.held_drive import drive_left
+from robokin.inverse.later_fields import changed, nearest_unknown, with_later_nearest
 from robokin.inverse.solution_names import branch_names
-from robokin.inverse.solutions import Arc, BatchResult, Family, Question, Result, named_later
+from robokin.inverse.solutions import Arc, BatchResult, Family, Question, Result, Solution, named_later
 from robokin.kernel.chain import row_standing
 from robokin.kernel.facts import fact
 from robokin.model import CoupledRobot, Robot
@@ -186,7 +187,24 @@ def _held(robot: Robot, hold: dict[int, float]) -> HeldArm:
 
 def _whole_result(arm: HeldArm, result: Result, named: Robot | None) -> Result:
     """The answer for one target; `named` is the robot that its postures are named for, None for the part's names."""
-    shown = [*result.solutions, *([result.nearest] if result.nearest is not None else [])]
+    solutions = _whole_solutions(arm, result.solutions, named)
+    families = tuple(_whole_family(arm, family) for family in result.families)
+    whole = changed(result, solutions=solutions, families=families)
+    if nearest_unknown(result):
+        return with_later_nearest(whole, vars(result).get("reason"), partial(_whole_why, arm, result, named))
+    if result.nearest is None:
+        return whole
+    return changed(whole, nearest=_whole_why(arm, result, named)[1])
+
+
+def _whole_why(arm: HeldArm, result: Result, named: Robot | None) -> tuple[str, Solution]:
+    """Why there is no solution, and what comes nearest."""
+    assert result.reason is not None and result.nearest is not None
+    return result.reason, _whole_solutions(arm, (result.nearest,), named)[0]
+
+
+def _whole_solutions(arm: HeldArm, shown: tuple[Solution, ...], named: Robot | None) -> tuple[Solution, ...]:
+    """The part's solutions as the robot's."""
 
     @cache
     def names() -> list[str]:
@@ -194,18 +212,13 @@ def _whole_result(arm: HeldArm, result: Result, named: Robot | None) -> Result:
             return [solution.branch for solution in shown]
         return _names(named, arm.whole(np.array([solution.q for solution in shown])))
 
-    values = arm.whole(np.array([solution.q for solution in shown]).reshape(-1, len(arm.free)))
-    whole = named_later(
+    return named_later(
         partial(_of, names),
-        values,
+        arm.whole(np.array([solution.q for solution in shown]).reshape(-1, len(arm.free))),
         [solution.within_limits and arm.inside for solution in shown],
         [(solution.position_error, solution.angle_error) for solution in shown],
         [arm.numbers(solution.free) if solution.free else () for solution in shown],
     )
-    solutions = whole[: len(result.solutions)]
-    nearest = whole[-1] if result.nearest is not None else None
-    families = tuple(_whole_family(arm, family) for family in result.families)
-    return replace(result, solutions=solutions, nearest=nearest, families=families)
 
 
 def _names(robot: Robot, q: Array) -> list[str]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.claims import BASES
+from robokin.inverse.later_fields import with_later_nearest
 from robokin.inverse.self_motion.arcs import arcs_of_each
 from robokin.inverse.self_motion.curve_crossings import crossings
 from robokin.inverse.self_motion.redundant import NOT_FOUND, seeds_of
@@ -59,8 +60,8 @@ def result_of(request: Request, block: TargetBlock, i: int) -> Result:
     }
     if solutions:
         return Result(solutions, complete, method, **told)
-    reason, nearest = why_not(request, block, i)
-    return Result((), complete, method, reason, nearest, **told)
+    result = Result((), complete, method, **told)
+    return with_later_nearest(result, known_reason(block, i), partial(why_not, request, block, i))
 
 
 def _name(block: TargetBlock, row: int) -> str:
@@ -131,6 +132,18 @@ def _redundant_families(request: Request, block: TargetBlock, i: int, q: Array) 
     return tuple(out)
 
 
+def known_reason(block: TargetBlock, i: int) -> str | None:
+    """Why target i has no solution, if that is known without its nearest configuration.
+
+    That the limits are in the way is, and that the target is farther off than the arm is long.
+    """
+    if block.closing[i]:
+        return block.outside(i)
+    if block.beyond[i]:
+        return FAR
+    return None if block.claims.basis[i] else NOT_FOUND
+
+
 def why_not(request: Request, block: TargetBlock, i: int) -> tuple[str, Solution]:
     """Why a target has no solution, and the configuration that comes nearest."""
     robot, analysis = request.robot, request.analysis
@@ -141,10 +154,9 @@ def why_not(request: Request, block: TargetBlock, i: int) -> tuple[str, Solution
         z, wish = forward_kinematics(robot, q[0])[:3, 2], block.T[i, :3, 2]
         angle = float(2.0 * np.arcsin(np.minimum(np.linalg.norm(z - wish) / 2.0, 1.0))) if analysis.open == 1 else 0.0
     nearest = Solution(q[0], branch_names(robot, q)[0], bool(inside[0]), position, angle)
-    if block.closing[i]:
-        return block.outside(i), nearest
-    if not block.claims.basis[i] and not block.beyond[i]:
-        return NOT_FOUND, nearest
+    reason = known_reason(block, i)
+    if reason is not None:
+        return reason, nearest
     if analysis.open < 3 and position <= REACHED * analysis.size:
         return "orientation not attainable by this arm at that position", nearest
     return FAR, nearest

@@ -11,6 +11,7 @@ from robokin.arrays import Array, Flags, Index
 from robokin.brief import Answer, Brief
 from robokin.errors import InputTypeError
 from robokin.expected import described
+from robokin.inverse.later_fields import FOUND_BY, WHY, changed, nothing_yet, with_later_families
 from robokin.model import Robot
 
 
@@ -177,8 +178,8 @@ class Result(Answer):
     solutions: tuple[Solution, ...]
     complete: bool
     method: str
-    reason: str | None = None
-    nearest: Solution | None = None
+    reason: str | None = field(default_factory=nothing_yet)
+    nearest: Solution | None = field(default_factory=nothing_yet)
     counts: Mapping[str, int] = field(default_factory=dict)
     postures: bool = False
     basis: str | None = None
@@ -190,18 +191,21 @@ class Result(Answer):
 
     def __getstate__(self) -> dict[str, Any]:
         """The fields, and what finds self-motions that are not worked out yet, for copies and pickles."""
-        return dict(self.__dict__)
+        if WHY not in self.__dict__:
+            return dict(self.__dict__)
+        nearest = self.nearest  # worked out now: what finds it knows a whole block of targets
+        return {**self.__dict__, "nearest": nearest}
 
     if not TYPE_CHECKING:  # who reads the types knows the fields alone
 
         def __getattr__(self, name: str) -> Any:
-            """The self-motions, where they are not worked out yet."""
+            """The self-motions, or the reason and what is nearest, where they are not worked out yet."""
             known = self.__dict__
-            find = known.get("_alone")
-            if find is not None and name in ("families", "families_complete"):
-                alone = find()
-                known["families"], known["families_complete"] = alone.families, alone.families_complete
-                known.pop("_alone", None)
+            place = FOUND_BY.get(name)
+            find = known.get(place)
+            if find is not None:
+                known.update(find())
+                known.pop(place, None)
             if name in known:  # found here, or meanwhile by another thread
                 return known[name]
             raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'", name=name, obj=self)
@@ -237,14 +241,6 @@ class Result(Answer):
 
 FIELDS = frozenset(part.name for part in fields(Result))
 """What is asked of a result."""
-
-
-def with_later_families(result: Result, alone: Callable[[], Result]) -> Result:
-    """A result whose self-motions are those of the answer for its target alone, found when they are first asked for."""
-    known = {name: value for name, value in vars(result).items() if name not in ("families", "families_complete")}
-    one = object.__new__(Result)
-    one.__dict__.update(known, _alone=alone)
-    return one
 
 
 class UnmadeResult(Result):
@@ -324,7 +320,7 @@ class BatchResult(Answer):
         if self.question is None:
             return result
         T = self.question.T[number]
-        result = replace(result, question=replace(self.question, T=T))
+        result = changed(result, question=replace(self.question, T=T))
         return result if self.alone is None else with_later_families(result, partial(self.alone, T))
 
     def __iter__(self) -> Iterator[Result]:

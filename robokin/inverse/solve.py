@@ -18,6 +18,7 @@ from robokin.inverse.answered_batch import answered_batch
 from robokin.inverse.coupled_joints import solve_coupled
 from robokin.inverse.full_turns import check_turns, with_full_turns, with_turn_counts
 from robokin.inverse.hold import HeldArm, check_held_limits, held_arm, own_near, whole_result, with_held_joints
+from robokin.inverse.later_fields import changed
 from robokin.inverse.one_answer import OneAnswer
 from robokin.inverse.one_target import plain_pose, solve_one
 from robokin.inverse.one_target_arm import one_target_arm
@@ -139,7 +140,7 @@ def _made_of_motions(known: SwivelSolution, method: Method, most: int | None, se
     result = known.result(question)
     if result is None:
         batch = solve_many(robot, T[None], True, None, method, "pose", most, seed, motions=True)
-        result = replace(batch[0], question=question)
+        result = changed(batch[0], question=question)
     return result
 
 

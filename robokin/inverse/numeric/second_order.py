@@ -38,6 +38,7 @@ from robokin.arrays import Array, Flags, Index
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import Judged, Known, Trial, held_at, led_down, solved
 from robokin.kernel.geometric_jacobian import Motion, crossed, motion
+from robokin.kernel.native_kernel import handle, native
 
 STEP = 0.6
 """Longest step of a joint [rad | size]: about as far as a quadratic model of a turn means anything. What has slid
@@ -122,6 +123,28 @@ def go_down(
     T: (4, 3, s) the targets' columns [m]; limits: (n, 1) or (n, s) twice [rad | size]; weight: w (s,); still: a
     step [rad | size] that ends the way; least: the least λ.
     """
+    known = handle(chain)
+    if native is None or known is None or chain.n > native.most_moved:
+        return go_down_by_columns(chain, T, x, size, limits, weight, steps=steps, still=still, least=least)
+    low, high = (np.broadcast_to(bound, x.shape).T for bound in limits)
+    targets, start = T.reshape(12, -1).T, np.ascontiguousarray(x.T)
+    ends, parts = native.gone_down(known, targets, start, size, low, high, weight, steps, still, least)
+    return np.ascontiguousarray(ends.T), parts[:, 0].copy(), parts[:, 1].copy()
+
+
+def go_down_by_columns(
+    chain: Chain,
+    T: Array,
+    x: Array,
+    size: float,
+    limits: tuple[Array, Array],
+    weight: Array,
+    *,
+    steps: int,
+    still: float,
+    least: float = LEAST,
+) -> tuple[Array, Array, Array]:
+    """`go_down` in Python."""
     low, high = limits
 
     def look(rows: Index, x: Array) -> Known:

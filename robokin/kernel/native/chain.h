@@ -54,6 +54,8 @@ typedef struct {
                          const double *, int, double *);                                                               \
     void corrected##name(const Chain *, const double *, const double *, int, const double *, double *, ptrdiff_t,      \
                          double, double, double, double *, double *);                                                  \
+    void gone_down##name(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *,   \
+                         const double *, int, double, double, double *);                                               \
     int advanced##name(const Chain *, Fronts *);                                                                       \
     void refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double *);                             \
     void complex_refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);              \

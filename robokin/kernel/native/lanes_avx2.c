@@ -3,4 +3,5 @@
 #include "closed_forms.h"
 #include "eliminate.h"
 #include "descents.h"
+#include "ways_down.h"
 #include "fronts.h"

@@ -22,18 +22,18 @@
 /* numpy has no more, whatever its version. */
 #define MOST_DIMENSIONS 64
 
-static const Lanes base = {poses_base, frames_base, jacobians_base, errors_base, descended_base, corrected_base, advanced_base,
-                           refined_base, complex_refined_base, tracked_base, regulars_base,
-                           shortest_of_base, finely_closed_base, solution_base, solutions_base, sides_base,
-                           prepared_elimination_base, eliminated_base, tried_candidates_base,
-                           listed_elimination_base};
+/* In the order of Lanes. */
+#define LANES(name)                                                                                                    \
+    {poses##name, frames##name, jacobians##name, errors##name, descended##name, corrected##name, gone_down##name,      \
+     advanced##name, refined##name, complex_refined##name, tracked##name, regulars##name, shortest_of##name,           \
+     finely_closed##name, solution##name, solutions##name, sides##name, prepared_elimination##name, eliminated##name,  \
+     tried_candidates##name, listed_elimination##name}
+
+static const Lanes base = LANES(_base);
 #ifdef ROBOKIN_AVX2
-static const Lanes avx2 = {poses_avx2, frames_avx2, jacobians_avx2, errors_avx2, descended_avx2, corrected_avx2, advanced_avx2,
-                           refined_avx2, complex_refined_avx2, tracked_avx2, regulars_avx2,
-                           shortest_of_avx2, finely_closed_avx2, solution_avx2, solutions_avx2, sides_avx2,
-                           prepared_elimination_avx2, eliminated_avx2, tried_candidates_avx2,
-                           listed_elimination_avx2};
+static const Lanes avx2 = LANES(_avx2);
 #endif
+
 Lanes lanes;
 
 static const char *in_use = "base";

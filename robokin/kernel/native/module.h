@@ -33,6 +33,8 @@ typedef struct {
                       const double *, int, double *);
     void (*corrected)(const Chain *, const double *, const double *, int, const double *, double *, ptrdiff_t, double,
                       double, double, double *, double *);
+    void (*gone_down)(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *,
+                      const double *, int, double, double, double *);
     int (*advanced)(const Chain *, Fronts *);
     void (*refined)(const Chain *, const double *, double *, ptrdiff_t, int, double *);
     void (*complex_refined)(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);

@@ -1,0 +1,276 @@
+/* Ways down of LANES configurations at once to where a pose is nearest to a target, by second derivatives, within
+   limits; one that has come to its end makes room for the next, and where it ends does not depend on the others.
+
+   Python's `second_order` is the reference, and says what is derived how. Comes after descents.h.
+*/
+
+/* See `second_order`. */
+#define WAY_STEP 0.6
+#define WAY_CAUTION 0.1
+#define WAY_PIVOT 1e-16
+#define WAY_INDEFINITE 0.03
+#define WAY_TRIES 4
+#define WAY_SHRINK 0.25
+#define WAY_NOISE 1e-15
+#define WAY_STUCK 1e8
+#define WAY_HOPELESS 1e20
+
+/* f's parts, f, its gradient and the right half of its Hessian, at x. */
+typedef struct {
+    double place[LANES], turn[LANES], f[LANES], x[MOST_MOVED][LANES], gradient[MOST_MOVED][LANES];
+    double H[MOST_MOVED][MOST_MOVED][LANES];
+} Slope;
+
+/* What is kept of the ways of all lanes. */
+typedef struct {
+    Slope here, there;
+    double low[MOST_MOVED][LANES], high[MOST_MOVED][LANES];
+    double weight[LANES], damping[LANES], growth[LANES], longest[LANES];
+    int made[LANES], definite[LANES];
+    ptrdiff_t place[LANES];
+} Ways;
+
+/* f and its derivatives at `to`'s x, for targets W. */
+static void sloped(const Chain *chain, double W[12][LANES], double size, const double weight[LANES], Slope *to) {
+    double axes[MOST_JOINTS][6][LANES], J[MOST_MOVED][6][LANES], U[MOST_MOVED][6][LANES], q[LANES * MOST_JOINTS];
+    double M[3][3][LANES], e[3][LANES], a[3][LANES], trace[LANES];
+    int n = chain->n;
+    Frame F;
+    for (int i = 0; i < n; i++)
+        for (int l = 0; l < LANES; l++)
+            q[n * l + i] = chain->revolute[i] ? to->x[i][l] : to->x[i][l] * size;
+    followed(chain, q, LANES, axes, &F);
+    for (int i = 0; i < n; i++)
+        column(chain, i, axes[i], &F, size, J[i]);
+    FOR_PARTS {
+        Part place = {0.0}, turn = {0.0};
+        for (int r = 0; r < 3; r++) {
+            Part off = (PART(F.v[9 + r]) - PART(W[9 + r])) / size;
+            PART(e[r]) = off;
+            place += off * off;
+        }
+        for (int j = 0; j < 9; j++) {
+            Part off = PART(F.v[j]) - PART(W[j]);
+            turn += off * off;
+        }
+        for (int r = 0; r < 3; r++)
+            for (int k = 0; k < 3; k++)
+                PART(M[r][k]) =
+                    PART(F.v[r]) * PART(W[k]) + PART(F.v[3 + r]) * PART(W[3 + k]) + PART(F.v[6 + r]) * PART(W[6 + k]);
+        PART(trace) = PART(M[0][0]) + PART(M[1][1]) + PART(M[2][2]);
+        for (int r = 0; r < 3; r++)
+            PART(a[r]) = 0.5 * (PART(M[(r + 2) % 3][(r + 1) % 3]) - PART(M[(r + 1) % 3][(r + 2) % 3]));
+        PART(to->place) = 0.5 * place;
+        PART(to->turn) = 0.25 * turn;
+        PART(to->f) = PART(to->place) + CONSTANT(weight) * PART(to->turn);
+        for (int i = 0; i < n; i++) {
+            Part along = {0.0}, about = {0.0};
+            for (int r = 0; r < 3; r++) {
+                int s = (r + 1) % 3, t = (r + 2) % 3;
+                Part w = PART(J[i][3 + r]);
+                PART(U[i][r]) = PART(J[i][r]) + (PART(e[s]) * PART(J[i][3 + t]) - PART(e[t]) * PART(J[i][3 + s]));
+                PART(U[i][3 + r]) =
+                    (0.5 * CONSTANT(weight)) * (PART(trace) * w - (PART(J[i][3]) * PART(M[0][r]) +
+                                                                   PART(J[i][4]) * PART(M[1][r]) +
+                                                                   PART(J[i][5]) * PART(M[2][r])));
+                along += PART(J[i][r]) * PART(e[r]);
+                about += w * PART(a[r]);
+            }
+            PART(to->gradient[i]) = along + CONSTANT(weight) * about;
+        }
+        for (int i = 0; i < n; i++)
+            for (int j = i; j < n; j++) {
+                Part sum = {0.0};
+                for (int r = 0; r < 6; r++)
+                    sum += PART(U[i][r]) * PART(J[j][r]);
+                PART(to->H[i][j]) = sum;
+            }
+    }
+}
+
+/* dx with (H + damping) dx = -gradient of the joints that are not held, and where that matrix is positive definite. */
+static void way_solved(int n, const Slope *here, double held[MOST_MOVED][LANES], const double damping[LANES],
+                       double dx[MOST_MOVED][LANES], double definite[LANES]) {
+    double A[MOST_MOVED][MOST_MOVED][LANES];
+    const Part zero = {0.0}, none = HUGE_VAL * ONE;
+    FOR_PARTS {
+        Bits all = zero == zero;
+        for (int i = 0; i < n; i++) {
+            Bits still = CONSTANT(held[i]) != zero;
+            PART(dx[i]) = chosen(still, zero, -CONSTANT(here->gradient[i]));
+            PART(A[i][i]) = chosen(still, ONE, CONSTANT(here->H[i][i]) + CONSTANT(damping));
+            for (int j = i + 1; j < n; j++)
+                PART(A[i][j]) = chosen(still | (CONSTANT(held[j]) != zero), zero, CONSTANT(here->H[i][j]));
+        }
+        /* What is not positive is made infinite: nothing is taken from the rows below it, and nothing grows. */
+        for (int k = 0; k < n; k++) {
+            Bits positive = PART(A[k][k]) > WAY_PIVOT;
+            Part D = chosen(positive, PART(A[k][k]), none);
+            all &= positive & (D < none);
+            PART(A[k][k]) = D;
+            for (int i = k + 1; i < n; i++) {
+                Part f = PART(A[k][i]) / D;
+                for (int j = i; j < n; j++)
+                    PART(A[i][j]) -= f * PART(A[k][j]);
+                PART(dx[i]) -= f * PART(dx[k]);
+            }
+        }
+        for (int k = n - 1; k >= 0; k--) {
+            Part value = PART(dx[k]) / PART(A[k][k]);
+            PART(dx[k]) = value;
+            for (int i = 0; i < k; i++)
+                PART(dx[i]) -= PART(A[i][k]) * value;
+        }
+        PART(definite) = chosen(all, ONE, zero);
+    }
+}
+
+/* The next steps of all lanes: `there` is where they lead. */
+static void way_step(const Chain *chain, Ways *at) {
+    double held[MOST_MOVED][LANES], dx[MOST_MOVED][LANES], definite[LANES];
+    const Slope *here = &at->here;
+    int n = chain->n, every = 0;
+    for (int i = 0; i < n; i++)
+        for (int l = 0; l < LANES; l++) {
+            double x = here->x[i][l], g = here->gradient[i][l];
+            held[i][l] = (x <= at->low[i][l] && g > 0.0) || (x >= at->high[i][l] && g < 0.0) ? 1.0 : 0.0;
+        }
+    for (int tried = 0; tried < WAY_TRIES && !every; tried++) {
+        way_solved(n, here, held, at->damping, dx, definite);
+        every = 1;
+        for (int l = 0; l < LANES; l++) {
+            if (definite[l] != 0.0)
+                continue;
+            double more = WAY_INDEFINITE * (sqrt(2.0 * here->place[l]) + at->weight[l]);
+            at->damping[l] = 8.0 * at->damping[l] > more ? 8.0 * at->damping[l] : more;
+            every &= at->place[l] < 0;
+        }
+    }
+    for (int l = 0; l < LANES; l++) {
+        double longest = WAY_STEP, greatest = 0.0;
+        at->definite[l] = definite[l] != 0.0;
+        for (int i = 0; i < n; i++) {
+            double far = fabs(here->x[i][l]), unit = chain->revolute[i] || !(far > 1.0) ? 1.0 : far;
+            dx[i][l] = at->definite[l] ? dx[i][l] : 0.0;
+            longest = fabs(dx[i][l] / unit) > longest ? fabs(dx[i][l] / unit) : longest;
+        }
+        for (int i = 0; i < n; i++) {
+            double step = dx[i][l] * (WAY_STEP / longest);
+            greatest = fabs(step) > greatest ? fabs(step) : greatest;
+            at->there.x[i][l] = clipped(here->x[i][l] + step, at->low[i][l], at->high[i][l]);
+        }
+        at->longest[l] = greatest;
+    }
+}
+
+/* Whether a lane's step is taken, and how the next ones are damped; true where it has come to its end. */
+static int judged(int n, Ways *at, int l, double still, double least, long long *taken) {
+    const Slope *now = &at->here, *after = &at->there;
+    double foretold = 0.0, dx[MOST_MOVED];
+    for (int i = 0; i < n; i++)
+        dx[i] = after->x[i][l] - now->x[i][l];
+    for (int i = 0; i < n; i++) {
+        double product = 0.0;
+        for (int j = 0; j < n; j++)
+            product += (i < j ? now->H[i][j][l] : now->H[j][i][l]) * dx[j];
+        foretold -= dx[i] * (now->gradient[i][l] + 0.5 * product);
+    }
+    double noise = WAY_NOISE * now->f[l] + DBL_MIN;
+    double ratio = (now->f[l] - after->f[l] + noise) / ((foretold > 0.0 ? foretold : 0.0) + noise);
+    int better = at->definite[l] && after->f[l] <= now->f[l] + noise && ratio > 1e-4;
+    double part = 2.0 * (ratio > 1.0 ? 1.0 : ratio) - 1.0, shrunk = 1.0 - part * part * part;
+    double damping = (better ? (shrunk > WAY_SHRINK ? shrunk : WAY_SHRINK) : at->growth[l]) * at->damping[l];
+    at->damping[l] = clipped(damping, least, WAY_HOPELESS);
+    at->growth[l] = better ? 4.0 : 2.0 * at->growth[l];
+    *taken = better ? -1 : 0;
+    return (better && at->longest[l] < still) || !(at->damping[l] <= WAY_STUCK);
+}
+
+/* What is known where the steps lead becomes what is known here, in the lanes that take them. */
+static void taken_over(int n, Ways *at, const long long taken[LANES]) {
+    Slope *here = &at->here, *there = &at->there;
+    FOR_PARTS {
+        Bits which = ((const Bits *)taken)[h];
+#define TAKE(what) PART(here->what) = chosen(which, PART(there->what), PART(here->what))
+        TAKE(place);
+        TAKE(turn);
+        TAKE(f);
+        for (int i = 0; i < n; i++) {
+            TAKE(x[i]);
+            TAKE(gradient[i]);
+            for (int j = i; j < n; j++)
+                TAKE(H[i][j]);
+        }
+#undef TAKE
+    }
+}
+
+/* Ways from values x (m, n) [rad | size] to targets T (m, 12), the columns x, y, z, p, within low and high (m, n).
+
+   weight: (m,) that of the orientation. x becomes where the ways end, and left (m, 2) is what f's parts are there. */
+void NAMED(gone_down)(const Chain *chain, const double *T, double *x, ptrdiff_t m, double size, const double *low,
+                      const double *high, const double *weight, int steps, double still, double least, double *left) {
+    Ways at;
+    double W[12][LANES];
+    long long taken[LANES];
+    ptrdiff_t next = 0, going = 0;
+    int n = chain->n, over[LANES];
+    if (!m)
+        return;
+    for (int l = 0; l < LANES; l++) {
+        at.place[l] = -2;
+        over[l] = 1;
+    }
+    for (;;) {
+        for (int l = 0; l < LANES; l++) {
+            ptrdiff_t row = at.place[l];
+            if (!over[l])
+                continue;
+            if (row >= 0) {
+                for (int i = 0; i < n; i++)
+                    x[n * row + i] = at.here.x[i][l];
+                left[2 * row] = at.here.place[l];
+                left[2 * row + 1] = at.here.turn[l];
+                going--;
+            }
+            if (next >= m && row != -2) {
+                at.place[l] = -1;
+                over[l] = 0;
+                at.made[l] = 0;
+                continue;
+            }
+            /* Where there are fewer than lanes some are the first once more, and nobody's. */
+            ptrdiff_t from = next < m ? next : 0;
+            at.place[l] = next < m ? next++ : -1;
+            going += at.place[l] >= 0;
+            over[l] = 0;
+            at.made[l] = 0;
+            at.weight[l] = weight[from];
+            at.damping[l] = WAY_CAUTION * weight[from] + least;
+            at.growth[l] = 4.0;
+            for (int j = 0; j < 12; j++)
+                W[j][l] = T[12 * from + j];
+            for (int i = 0; i < n; i++) {
+                at.low[i][l] = low[n * from + i];
+                at.high[i][l] = high[n * from + i];
+                at.there.x[i][l] = clipped(x[n * from + i], at.low[i][l], at.high[i][l]);
+            }
+        }
+        if (!going)
+            return;
+        sloped(chain, W, size, at.weight, &at.there);
+        for (int l = 0; l < LANES; l++) {
+            if (at.made[l] == 0) {
+                taken[l] = -1;
+                over[l] = at.place[l] >= 0 && steps == 0;
+                continue;
+            }
+            over[l] = judged(n, &at, l, still, least, &taken[l]);
+            over[l] = at.place[l] >= 0 && (over[l] || at.made[l] >= steps);
+        }
+        taken_over(n, &at, taken);
+        way_step(chain, &at);
+        for (int l = 0; l < LANES; l++)
+            at.made[l]++;
+    }
+}
