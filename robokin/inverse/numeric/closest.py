@@ -36,10 +36,10 @@ from robokin.spatial.angles import circled
 MoreStarts = tuple[Index, Array]
 """More initial guesses: the targets (s,) that they are for and the configurations (s, n) [rad | m]."""
 
-FINALISTS = 20
+FINALISTS = 24
 """Ends of the first descents that are followed further."""
 
-LEADERS = 6
+LEADERS = 8
 """Ends of those that are followed to the last digit."""
 
 HOPE = 1e-2

@@ -13,6 +13,7 @@ Degenerate case. A joint without limits is drawn within a turn or an arm's size;
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import product
 
 import numpy as np
@@ -38,6 +39,9 @@ BOUNDED = 8
 
 LONG = 100.0
 """A slide's way [size] above which values spread evenly over it would hardly ever be near the links."""
+
+KEPT = 8
+"""How often what was drawn is kept for the next target: a quarter of a megabyte to a megabyte each, whatever the robot."""
 
 TURN = 1e-2
 """Weight of 1 - cos θ against ½|p - t|² [size²] by which configurations are compared."""
@@ -83,6 +87,12 @@ class Guesses:
 
 def guesses(chain: Chain, limits: Array, size: float, seed: int) -> Guesses:
     """What to choose from within limits (n, 2) [rad | m]."""
+    return _drawn(chain, np.ascontiguousarray(limits, dtype=np.float64).tobytes(), size, seed)
+
+
+@lru_cache(maxsize=KEPT)
+def _drawn(chain: Chain, limits_of: bytes, size: float, seed: int) -> Guesses:
+    limits = np.frombuffer(limits_of).reshape(-1, 2)
     rng = np.random.default_rng(seed)
     reach = np.where(chain.revolute, np.pi, size)
     ends = np.where(np.isinf(limits), reach[:, None] * [-1.0, 1.0], limits)

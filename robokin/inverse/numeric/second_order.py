@@ -37,6 +37,7 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.kernel.chain import Chain
 from robokin.kernel.damped_newton import Judged, Known, Trial, held_at, led_down, solved
+from robokin.kernel.frames import pose
 from robokin.kernel.geometric_jacobian import Motion, crossed, motion
 from robokin.kernel.native_kernel import handle, native
 
@@ -216,13 +217,24 @@ def _motion(chain: Chain, x: Array, size: float) -> Motion:
 
 def place_jacobian(chain: Chain, x: Array, size: float) -> Array:
     """∂p/∂x (n, 3, s) [size] at x: (n, s) [rad | size]."""
-    return _motion(chain, x, size).linear
+    known = handle(chain)
+    if native is None or known is None:
+        return _motion(chain, x, size).linear
+    J: Array = native.jacobian(known, _values(chain, x, size), size, False)
+    return J[:, :3].transpose(2, 1, 0)
 
 
 def offsets(chain: Chain, T: Array, x: Array, size: float) -> Array:
     """p - t (3, s) [size] at x: (n, s) [rad | size], for targets T: (4, 3, s) [m]."""
-    away: Array = (_motion(chain, x, size).tool[3] - T[3]) / size
+    known = handle(chain)
+    p = _motion(chain, x, size).tool[3] if known is None else pose(chain, _values(chain, x, size))[:, :3, 3].T
+    away: Array = (p - T[3]) / size
     return away
+
+
+def _values(chain: Chain, x: Array, size: float) -> Array:
+    """x (n, s) [rad | size] as joint values (s, n) [rad | m]."""
+    return np.ascontiguousarray((x if chain.revolute.all() else np.where(chain.revolute[:, None], x, x * size)).T)
 
 
 def _of(part: Array, rows: Index) -> Array:

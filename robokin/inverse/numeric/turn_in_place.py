@@ -20,6 +20,7 @@ from robokin.arrays import Array, Index
 from robokin.inverse.numeric.position_first import DescentEnds, Ways
 from robokin.inverse.numeric.second_order import offsets, place_jacobian, slope
 from robokin.kernel.damped_newton import Judged, Known, Trial, held_at, led_down, limited
+from robokin.kernel.native_kernel import handle, native
 from robokin.kernel.ranks import RANK
 
 HAS_POSITION = 1e-11
@@ -46,7 +47,24 @@ def turned_in_place(ways: Ways, T: Array, ends: DescentEnds) -> DescentEnds:
     chosen = np.flatnonzero((ends.distance <= HAS_POSITION) & (ends.angle > 0.0))
     if not len(chosen):
         return ends
-    T, low, high = T[..., chosen], *(np.broadcast_to(bound, ends.x.shape)[:, chosen] for bound in (ways.low, ways.high))
+    box = (np.broadcast_to(bound, ends.x.shape)[:, chosen] for bound in (ways.low, ways.high))
+    some = Ways(ways.chain, ways.size, *box)
+    known = handle(ways.chain)
+    if native is None or known is None or ways.chain.n > native.most_moved:
+        x, place, turn = turned_by_columns(some, T[..., chosen], ends.x[:, chosen])
+    else:
+        targets, start = T[..., chosen].reshape(12, -1).T, ends.x[:, chosen].T
+        x, parts = native.turned(known, targets, start, ways.size, some.low.T, some.high.T, STEPS)
+        x, place, turn = x.T, np.sqrt(2.0 * parts[:, 0]), parts[:, 1]
+    out = DescentEnds(ends.x.copy(), ends.distance.copy(), ends.angle.copy())
+    out.x[:, chosen], out.distance[chosen] = x, place
+    out.angle[chosen] = 2.0 * np.arcsin(np.sqrt(np.minimum(0.5 * turn, 1.0)))
+    return out
+
+
+def turned_by_columns(ways: Ways, T: Array, x: Array) -> tuple[Array, ...]:
+    """In Python where x (n, s) comes to, the distances there [size] and 1 - cos θ, each (s,); limits (n, s) in ways."""
+    low, high = ways.low, ways.high
 
     def look(rows: Index, x: Array) -> Known:
         here = slope(ways.chain, T[..., rows], x, ways.size, np.ones(len(rows)))
@@ -61,12 +79,7 @@ def turned_in_place(ways: Ways, T: Array, ends: DescentEnds) -> DescentEnds:
         less = (there[0] <= np.maximum(here[0], HAS_POSITION)) & (there[1] < here[1])
         return Judged(less, (np.where(less, np.minimum(2.0 * trial.trust[0], 1.0), 0.25 * trial.trust[0]),))
 
-    trust = (np.ones(len(chosen)),)
-    x, place, turn = led_down(look, step, judge, ends.x[:, chosen], trust, steps=STEPS, told=2, axis=-1)
-    out = DescentEnds(ends.x.copy(), ends.distance.copy(), ends.angle.copy())
-    out.x[:, chosen], out.distance[chosen] = x, place
-    out.angle[chosen] = 2.0 * np.arcsin(np.sqrt(np.minimum(0.5 * turn, 1.0)))
-    return out
+    return led_down(look, step, judge, x, (np.ones(x.shape[1]),), steps=STEPS, told=2, axis=-1)
 
 
 def _step(ways: Ways, T: Array, x: Array, low: Array, high: Array) -> Array:

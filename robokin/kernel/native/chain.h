@@ -56,6 +56,8 @@ typedef struct {
                          double, double, double, double *, double *);                                                  \
     void gone_down##name(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *,   \
                          const double *, int, double, double, double *);                                               \
+    void turned##name(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *, int, \
+                      double *);                                                                                       \
     int advanced##name(const Chain *, Fronts *);                                                                       \
     void refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double *);                             \
     void complex_refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);              \

@@ -283,6 +283,40 @@ end:
     return both;
 }
 
+static PyObject *turned(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copies[4] = {NULL, NULL, NULL, NULL}, *x = NULL, *parts = NULL, *both = NULL;
+    (void)self;
+    if (count != 7) {
+        PyErr_SetString(PyExc_TypeError, "turned(chain, T, x, size, low, high, steps)");
+        return NULL;
+    }
+    double size = PyFloat_AsDouble(args[3]);
+    int steps = PyErr_Occurred() ? -1 : steps_of(args[6]);
+    const Chain *known = steps < 0 ? NULL : moved_chain(args[0]);
+    npy_intp m = -1, n = known ? known->n : 0;
+    if (!known)
+        return NULL;
+    const double *T = table(args[1], 12, &m, &copies[0]), *from = T ? table(args[2], n, &m, &copies[1]) : NULL;
+    const double *low = from ? table(args[4], n, &m, &copies[2]) : NULL;
+    const double *high = low ? table(args[5], n, &m, &copies[3]) : NULL;
+    x = high ? made(m, n) : NULL;
+    parts = x ? made(m, 2) : NULL;
+    if (!parts)
+        goto end;
+    double *to = numbers_of(x), *left = numbers_of(parts);
+    Py_BEGIN_ALLOW_THREADS
+    memcpy(to, from, (size_t)(m * n) * sizeof(double));
+    lanes.turned(known, T, to, m, size, low, high, steps, left);
+    Py_END_ALLOW_THREADS
+    both = PyTuple_Pack(2, x, parts);
+end:
+    for (int i = 0; i < 4; i++)
+        Py_XDECREF(copies[i]);
+    Py_XDECREF(x);
+    Py_XDECREF(parts);
+    return both;
+}
+
 static PyObject *corrected(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     PyObject *copies[4] = {NULL, NULL, NULL, NULL}, *x = NULL, *off = NULL, *J = NULL, *all = NULL;
     (void)self;
@@ -419,6 +453,8 @@ PyMethodDef descent_methods[] = {
      "descended(chain, T, far, x, size, low, high, steps): values (m, n) and errors (m, 6)"},
     {"gone_down", (PyCFunction)(void (*)(void))gone_down, METH_FASTCALL,
      "gone_down(chain, T, x, size, low, high, weight, steps, still, least): values (m, n) and f's parts (m, 2)"},
+    {"turned", (PyCFunction)(void (*)(void))turned, METH_FASTCALL,
+     "turned(chain, T, x, size, low, high, steps): values (m, n), and what is left as `gone_down` has it (m, 2)"},
     {"corrected", (PyCFunction)(void (*)(void))corrected, METH_FASTCALL,
      "corrected(chain, T, normals, extra, most, x, size, settled, zero): (m, n), (m,), (m, 6, n)"},
     {"shortest", (PyCFunction)(void (*)(void))shortest, METH_FASTCALL, "shortest(A, b, zero): dx (m, n)"},

@@ -4,4 +4,5 @@
 #include "eliminate.h"
 #include "descents.h"
 #include "ways_down.h"
+#include "turned.h"
 #include "fronts.h"

@@ -25,9 +25,9 @@
 /* In the order of Lanes. */
 #define LANES(name)                                                                                                    \
     {poses##name, frames##name, jacobians##name, errors##name, descended##name, corrected##name, gone_down##name,      \
-     advanced##name, refined##name, complex_refined##name, tracked##name, regulars##name, shortest_of##name,           \
-     finely_closed##name, solution##name, solutions##name, sides##name, prepared_elimination##name, eliminated##name,  \
-     tried_candidates##name, listed_elimination##name}
+     turned##name, advanced##name, refined##name, complex_refined##name, tracked##name, regulars##name,                \
+     shortest_of##name, finely_closed##name, solution##name, solutions##name, sides##name,                             \
+     prepared_elimination##name, eliminated##name, tried_candidates##name, listed_elimination##name}
 
 static const Lanes base = LANES(_base);
 #ifdef ROBOKIN_AVX2

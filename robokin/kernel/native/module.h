@@ -35,6 +35,8 @@ typedef struct {
                       double, double, double *, double *);
     void (*gone_down)(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *,
                       const double *, int, double, double, double *);
+    void (*turned)(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *, int,
+                   double *);
     int (*advanced)(const Chain *, Fronts *);
     void (*refined)(const Chain *, const double *, double *, ptrdiff_t, int, double *);
     void (*complex_refined)(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);

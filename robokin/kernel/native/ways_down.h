@@ -30,62 +30,86 @@ typedef struct {
     ptrdiff_t place[LANES];
 } Ways;
 
-/* f and its derivatives at `to`'s x, for targets W. */
-static void sloped(const Chain *chain, double W[12][LANES], double size, const double weight[LANES], Slope *to) {
-    double axes[MOST_JOINTS][6][LANES], J[MOST_MOVED][6][LANES], U[MOST_MOVED][6][LANES], q[LANES * MOST_JOINTS];
-    double M[3][3][LANES], e[3][LANES], a[3][LANES], trace[LANES];
+/* How the tools of all lanes move, in sizes, and what their poses lack: e = p - t, a half the vector of the skew part
+   of M, the found rotation times the transpose of the wished one. */
+typedef struct {
+    double J[MOST_MOVED][6][LANES], e[3][LANES], a[3][LANES], M[3][3][LANES], trace[LANES];
+} Moved;
+
+/* The tools at values x [rad | size], for targets W; and half of the squared distance, and 1 - cos of the angle. */
+static void moved_tools(const Chain *chain, double x[MOST_MOVED][LANES], double W[12][LANES], double size, Moved *to,
+                        double place[LANES], double turn[LANES]) {
+    double axes[MOST_JOINTS][6][LANES], q[LANES * MOST_JOINTS];
     int n = chain->n;
     Frame F;
     for (int i = 0; i < n; i++)
         for (int l = 0; l < LANES; l++)
-            q[n * l + i] = chain->revolute[i] ? to->x[i][l] : to->x[i][l] * size;
+            q[n * l + i] = chain->revolute[i] ? x[i][l] : x[i][l] * size;
     followed(chain, q, LANES, axes, &F);
     for (int i = 0; i < n; i++)
-        column(chain, i, axes[i], &F, size, J[i]);
+        column(chain, i, axes[i], &F, size, to->J[i]);
     FOR_PARTS {
-        Part place = {0.0}, turn = {0.0};
+        Part away = {0.0}, turned = {0.0};
         for (int r = 0; r < 3; r++) {
             Part off = (PART(F.v[9 + r]) - PART(W[9 + r])) / size;
-            PART(e[r]) = off;
-            place += off * off;
+            PART(to->e[r]) = off;
+            away += off * off;
         }
         for (int j = 0; j < 9; j++) {
             Part off = PART(F.v[j]) - PART(W[j]);
-            turn += off * off;
+            turned += off * off;
         }
         for (int r = 0; r < 3; r++)
             for (int k = 0; k < 3; k++)
-                PART(M[r][k]) =
+                PART(to->M[r][k]) =
                     PART(F.v[r]) * PART(W[k]) + PART(F.v[3 + r]) * PART(W[3 + k]) + PART(F.v[6 + r]) * PART(W[6 + k]);
-        PART(trace) = PART(M[0][0]) + PART(M[1][1]) + PART(M[2][2]);
-        for (int r = 0; r < 3; r++)
-            PART(a[r]) = 0.5 * (PART(M[(r + 2) % 3][(r + 1) % 3]) - PART(M[(r + 1) % 3][(r + 2) % 3]));
-        PART(to->place) = 0.5 * place;
-        PART(to->turn) = 0.25 * turn;
-        PART(to->f) = PART(to->place) + CONSTANT(weight) * PART(to->turn);
+        PART(to->trace) = PART(to->M[0][0]) + PART(to->M[1][1]) + PART(to->M[2][2]);
+        for (int r = 0; r < 3; r++) {
+            int s = (r + 1) % 3, t = (r + 2) % 3;
+            PART(to->a[r]) = 0.5 * (PART(to->M[t][s]) - PART(to->M[s][t]));
+        }
+        PART(place) = 0.5 * away;
+        PART(turn) = 0.25 * turned;
+    }
+}
+
+/* f's gradient, and the right half of its Hessian, of tools that are off by e from their places. */
+static void curved(int n, Moved *at, double e[3][LANES], const double weight[LANES], double gradient[MOST_MOVED][LANES],
+                   double H[MOST_MOVED][MOST_MOVED][LANES]) {
+    double U[MOST_MOVED][6][LANES];
+    FOR_PARTS {
+        Part w = CONSTANT(weight);
         for (int i = 0; i < n; i++) {
             Part along = {0.0}, about = {0.0};
             for (int r = 0; r < 3; r++) {
                 int s = (r + 1) % 3, t = (r + 2) % 3;
-                Part w = PART(J[i][3 + r]);
-                PART(U[i][r]) = PART(J[i][r]) + (PART(e[s]) * PART(J[i][3 + t]) - PART(e[t]) * PART(J[i][3 + s]));
-                PART(U[i][3 + r]) =
-                    (0.5 * CONSTANT(weight)) * (PART(trace) * w - (PART(J[i][3]) * PART(M[0][r]) +
-                                                                   PART(J[i][4]) * PART(M[1][r]) +
-                                                                   PART(J[i][5]) * PART(M[2][r])));
-                along += PART(J[i][r]) * PART(e[r]);
-                about += w * PART(a[r]);
+                Part axis = PART(at->J[i][3 + r]);
+                Part mixed = PART(at->J[i][3]) * PART(at->M[0][r]) + PART(at->J[i][4]) * PART(at->M[1][r]) +
+                             PART(at->J[i][5]) * PART(at->M[2][r]);
+                PART(U[i][r]) =
+                    PART(at->J[i][r]) + (PART(e[s]) * PART(at->J[i][3 + t]) - PART(e[t]) * PART(at->J[i][3 + s]));
+                PART(U[i][3 + r]) = (0.5 * w) * (PART(at->trace) * axis - mixed);
+                along += PART(at->J[i][r]) * PART(e[r]);
+                about += axis * PART(at->a[r]);
             }
-            PART(to->gradient[i]) = along + CONSTANT(weight) * about;
+            PART(gradient[i]) = along + w * about;
         }
         for (int i = 0; i < n; i++)
             for (int j = i; j < n; j++) {
                 Part sum = {0.0};
                 for (int r = 0; r < 6; r++)
-                    sum += PART(U[i][r]) * PART(J[j][r]);
-                PART(to->H[i][j]) = sum;
+                    sum += PART(U[i][r]) * PART(at->J[j][r]);
+                PART(H[i][j]) = sum;
             }
     }
+}
+
+/* f and its derivatives at `to`'s x, for targets W. */
+static void sloped(const Chain *chain, double W[12][LANES], double size, const double weight[LANES], Slope *to) {
+    Moved at;
+    moved_tools(chain, to->x, W, size, &at, to->place, to->turn);
+    curved(chain->n, &at, at.e, weight, to->gradient, to->H);
+    FOR_PARTS PART(to->f) = PART(to->place) + CONSTANT(weight) * PART(to->turn);
 }
 
 /* dx with (H + damping) dx = -gradient of the joints that are not held, and where that matrix is positive definite. */
