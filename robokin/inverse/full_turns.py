@@ -211,7 +211,7 @@ def _single(result: Result, rows: Turned, total: int) -> Result:
     own = rows.own.tolist()
     families = tuple(replace(family, solution=_place(of, own, family.solution)) for family in result.families)
     whole = len(solutions) == total
-    return replace(
+    return changed(
         result, solutions=solutions, counts=counts, families=families, complete=result.complete and whole,
         basis=result.basis if whole else None,
         postures=result.postures and whole,

@@ -287,12 +287,12 @@ class TargetBlock:
     def nearest(self, i: int) -> tuple[Array, float, float]:
         """The configuration (n,) closest to target i, which has no solution, and its distance [m] and angle [rad].
 
-        Together they take less time each: with it those to the next targets without a solution are found,
-        of the same kind, as often only one kind is asked for.
+        Together they take less time each: the more are asked for, the more of the next targets' are found with one,
+        of those without a solution of the same kind, as often only one kind is asked for.
         """
         if i not in self._nearest:
             alike = (self.count == 0) & ((self.closing > 0) == (self.closing[i] > 0))
-            rows = i + np.flatnonzero(alike[i:])[:TOGETHER]
+            rows = i + np.flatnonzero(alike[i:])[: min(TOGETHER, 1 + len(self._nearest))]
             request = self.request
             found = nearest_configurations(
                 request.analysis, self.T[rows], request.own_limits, request.middle, request.seed

@@ -8,9 +8,10 @@ from sweeps import sweep
 
 import robokin
 from robokin.inverse.analysis import analysis_of
+from robokin.inverse.numeric import second_order, turn_in_place
 from robokin.inverse.numeric.closest import beyond_reach, nearest_configurations
 from robokin.inverse.numeric.closing import closing_nearest
-from robokin.inverse.numeric.position_first import DescentEnds, Ways
+from robokin.inverse.numeric.position_first import SAME_PLACE, DescentEnds, Ways, position_first
 from robokin.inverse.numeric.second_order import go_down, slope, solve_definite
 from robokin.inverse.numeric.turn_in_place import turned_in_place
 from robokin.inverse.solve import solve_many
@@ -145,6 +146,30 @@ def test_no_configuration_comes_nearer(name, bounded, rng):
     found = robokin.forward_kinematics(robot, q)
     assert np.allclose(np.linalg.norm(found[:, :3, 3] - T[:, :3, 3], axis=1), position, atol=1e-12 * analysis.size)
     assert np.allclose([rotation_angle(a[:3, :3], b[:3, :3]) for a, b in zip(T, found, strict=True)], angle, atol=1e-7)
+
+
+@pytest.mark.parametrize("kernel", ["in use", "python"])
+@pytest.mark.parametrize("name", sweep(ARMS, 3))
+def test_no_start_nearby_comes_nearer(name, kernel, rng, monkeypatch):
+    """Ways with the position first from all around what was found, near it and less near, end nowhere better."""
+    if kernel == "python":
+        for module in (second_order, turn_in_place):
+            monkeypatch.setattr(module, "native", None)
+    robot = robokin.load(name)
+    analysis, count = analysis_of(robot), 12
+    T = scattered(robot, analysis, 8, rng)
+    q, position, angle = closest(robot, T)
+    scale = np.where(robot.revolute, 1.0, analysis.size)
+    low, high = (robot.limits / scale[:, None]).T[..., None]
+    around = np.repeat([1e-3, 1e-2, 0.1], count // 3)
+    began = (q / scale)[:, None] + around[:, None] * rng.normal(size=(len(T), count, robot.n))
+    began = np.ascontiguousarray(np.clip(began.reshape(-1, robot.n).T, low, high))
+    many = np.repeat(columns(T), count, axis=2)
+    ends = position_first(Ways(analysis.chain, analysis.size, low, high), many, began, (1e-4, 1e-6, 1e-8), 30, 25)
+    distance, left = ends.distance.reshape(len(T), count), ends.angle.reshape(len(T), count)
+    known = (position / analysis.size)[:, None]
+    assert np.all(distance >= known - EXACT)
+    assert np.all((distance > known + SAME_PLACE) | (left >= angle[:, None] - 1e-6))
 
 
 # Then the orientation ----------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ Degenerate case. A joint without limits is drawn within a turn or an arm's size;
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import product
 
 import numpy as np
@@ -41,7 +41,7 @@ LONG = 100.0
 """A slide's way [size] above which values spread evenly over it would hardly ever be near the links."""
 
 KEPT = 8
-"""How often what was drawn is kept for the next target: a quarter of a megabyte to a megabyte each, whatever the robot."""
+"""How often what was drawn is kept for the next target: some megabyte each."""
 
 TURN = 1e-2
 """Weight of 1 - cos θ against ½|p - t|² [size²] by which configurations are compared."""
@@ -57,13 +57,18 @@ class Guesses:
     q: Array
     poses: Array
 
+    @cached_property
+    def entries(self) -> Array:
+        """(3, 4, k) the poses' entries."""
+        return np.ascontiguousarray(self.poses[:, :3].transpose(1, 2, 0))
+
     def nearest(self, T: Array, size: float) -> Array:
         """(m, 2 PARTS + CORNERS, n) the guesses for targets T: (m, 4, 4) [m]."""
         away = np.zeros((len(T), len(self.poses)))
         for row in range(3):
             for column in range(4):
                 weight = 1.0 / size**2 if column == 3 else TURN / 2.0
-                away += weight * np.square(self.poses[:, row, column] - T[:, None, row, column])
+                away += weight * np.square(self.entries[row, column] - T[:, None, row, column])
         drawn, each = 2 * DRAWN, DRAWN // PARTS
         best = np.argmin(away[:, :drawn].reshape(len(T), 2 * PARTS, each), axis=2) + each * np.arange(2 * PARTS)
         corners = drawn + np.argsort(away[:, drawn:], axis=1, kind="stable")[:, :CORNERS]

@@ -127,9 +127,8 @@ def go_down(
     known = handle(chain)
     if native is None or known is None or chain.n > native.most_moved:
         return go_down_by_columns(chain, T, x, size, limits, weight, steps=steps, still=still, least=least)
-    low, high = (np.broadcast_to(bound, x.shape).T for bound in limits)
-    targets, start = T.reshape(12, -1).T, np.ascontiguousarray(x.T)
-    ends, parts = native.gone_down(known, targets, start, size, low, high, weight, steps, still, least)
+    low, high = limits
+    ends, parts = native.gone_down(known, T.reshape(12, -1).T, x.T, size, low.T, high.T, weight, steps, still, least)
     return np.ascontiguousarray(ends.T), parts[:, 0].copy(), parts[:, 1].copy()
 
 

@@ -55,7 +55,7 @@ typedef struct {
     void corrected##name(const Chain *, const double *, const double *, int, const double *, double *, ptrdiff_t,      \
                          double, double, double, double *, double *);                                                  \
     void gone_down##name(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *,   \
-                         const double *, int, double, double, double *);                                               \
+                         int, const double *, int, double, double, double *);                                          \
     void turned##name(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *, int, \
                       double *);                                                                                       \
     int advanced##name(const Chain *, Fronts *);                                                                       \

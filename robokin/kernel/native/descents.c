@@ -262,8 +262,14 @@ static PyObject *gone_down(PyObject *self, PyObject *const *args, Py_ssize_t cou
     if (!known)
         return NULL;
     const double *T = table(args[1], 12, &m, &copies[0]), *from = T ? table(args[2], n, &m, &copies[1]) : NULL;
-    const double *low = from ? table(args[4], n, &m, &copies[2]) : NULL;
-    const double *high = low ? table(args[5], n, &m, &copies[3]) : NULL;
+    /* Limits of each, or one row for all. */
+    npy_intp bounds = -1;
+    const double *low = from ? table(args[4], n, &bounds, &copies[2]) : NULL;
+    const double *high = low ? table(args[5], n, &bounds, &copies[3]) : NULL;
+    if (high && bounds != 1 && bounds != m) {
+        PyErr_SetString(PyExc_ValueError, "arrays of a descent do not fit each other");
+        goto end;
+    }
     const double *weight = high ? table(args[6], 1, &m, &copies[4]) : NULL;
     x = weight ? made(m, n) : NULL;
     parts = x ? made(m, 2) : NULL;
@@ -272,7 +278,7 @@ static PyObject *gone_down(PyObject *self, PyObject *const *args, Py_ssize_t cou
     double *to = numbers_of(x), *left = numbers_of(parts);
     Py_BEGIN_ALLOW_THREADS
     memcpy(to, from, (size_t)(m * n) * sizeof(double));
-    lanes.gone_down(known, T, to, m, size, low, high, weight, steps, still, least, left);
+    lanes.gone_down(known, T, to, m, size, low, high, bounds == m, weight, steps, still, least, left);
     Py_END_ALLOW_THREADS
     both = PyTuple_Pack(2, x, parts);
 end:

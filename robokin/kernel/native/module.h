@@ -34,7 +34,7 @@ typedef struct {
     void (*corrected)(const Chain *, const double *, const double *, int, const double *, double *, ptrdiff_t, double,
                       double, double, double *, double *);
     void (*gone_down)(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *,
-                      const double *, int, double, double, double *);
+                      int, const double *, int, double, double, double *);
     void (*turned)(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *, int,
                    double *);
     int (*advanced)(const Chain *, Fronts *);

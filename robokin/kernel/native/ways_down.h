@@ -25,8 +25,8 @@ typedef struct {
 typedef struct {
     Slope here, there;
     double low[MOST_MOVED][LANES], high[MOST_MOVED][LANES];
-    double weight[LANES], damping[LANES], growth[LANES], longest[LANES];
-    int made[LANES], definite[LANES];
+    double weight[LANES], damping[LANES], growth[LANES], longest[LANES], definite[LANES];
+    int made[LANES];
     ptrdiff_t place[LANES];
 } Ways;
 
@@ -46,8 +46,22 @@ static void moved_tools(const Chain *chain, double x[MOST_MOVED][LANES], double 
         for (int l = 0; l < LANES; l++)
             q[n * l + i] = chain->revolute[i] ? x[i][l] : x[i][l] * size;
     followed(chain, q, LANES, axes, &F);
+    double per = 1.0 / size;
     for (int i = 0; i < n; i++)
-        column(chain, i, axes[i], &F, size, to->J[i]);
+        FOR_PARTS {
+            const Part none = {0.0};
+            Part z[3], lever[3];
+            int slides = !chain->revolute[i];
+            for (int r = 0; r < 3; r++) {
+                z[r] = PART(axes[i][r]);
+                lever[r] = (PART(F.v[9 + r]) - PART(axes[i][3 + r])) * per;
+            }
+            for (int r = 0; r < 3; r++) {
+                int s = (r + 1) % 3, t = (r + 2) % 3;
+                PART(to->J[i][r]) = slides ? z[r] : (Part)(z[s] * lever[t] - z[t] * lever[s]);
+                PART(to->J[i][3 + r]) = slides ? none : z[r];
+            }
+        }
     FOR_PARTS {
         Part away = {0.0}, turned = {0.0};
         for (int r = 0; r < 3; r++) {
@@ -131,16 +145,16 @@ static void way_solved(int n, const Slope *here, double held[MOST_MOVED][LANES],
             Bits positive = PART(A[k][k]) > WAY_PIVOT;
             Part D = chosen(positive, PART(A[k][k]), none);
             all &= positive & (D < none);
-            PART(A[k][k]) = D;
+            PART(A[k][k]) = ONE / D;
             for (int i = k + 1; i < n; i++) {
-                Part f = PART(A[k][i]) / D;
+                Part f = PART(A[k][i]) * PART(A[k][k]);
                 for (int j = i; j < n; j++)
                     PART(A[i][j]) -= f * PART(A[k][j]);
                 PART(dx[i]) -= f * PART(dx[k]);
             }
         }
         for (int k = n - 1; k >= 0; k--) {
-            Part value = PART(dx[k]) / PART(A[k][k]);
+            Part value = PART(dx[k]) * PART(A[k][k]);
             PART(dx[k]) = value;
             for (int i = 0; i < k; i++)
                 PART(dx[i]) -= PART(A[i][k]) * value;
@@ -149,15 +163,21 @@ static void way_solved(int n, const Slope *here, double held[MOST_MOVED][LANES],
     }
 }
 
+static inline Part lesser(Part a, Part b) { return chosen(a < b, a, b); }
+
+static inline Part absolute(Part a) { return chosen(a < 0.0 * ONE, -a, a); }
+
 /* The next steps of all lanes: `there` is where they lead. */
 static void way_step(const Chain *chain, Ways *at) {
     double held[MOST_MOVED][LANES], dx[MOST_MOVED][LANES], definite[LANES];
     const Slope *here = &at->here;
+    const Part zero = {0.0};
     int n = chain->n, every = 0;
     for (int i = 0; i < n; i++)
-        for (int l = 0; l < LANES; l++) {
-            double x = here->x[i][l], g = here->gradient[i][l];
-            held[i][l] = (x <= at->low[i][l] && g > 0.0) || (x >= at->high[i][l] && g < 0.0) ? 1.0 : 0.0;
+        FOR_PARTS {
+            Part x = CONSTANT(here->x[i]), g = CONSTANT(here->gradient[i]);
+            Bits out = ((x <= PART(at->low[i])) & (g > zero)) | ((x >= PART(at->high[i])) & (g < zero));
+            PART(held[i]) = chosen(out, ONE, zero);
         }
     for (int tried = 0; tried < WAY_TRIES && !every; tried++) {
         way_solved(n, here, held, at->damping, dx, definite);
@@ -170,44 +190,54 @@ static void way_step(const Chain *chain, Ways *at) {
             every &= at->place[l] < 0;
         }
     }
-    for (int l = 0; l < LANES; l++) {
-        double longest = WAY_STEP, greatest = 0.0;
-        at->definite[l] = definite[l] != 0.0;
+    FOR_PARTS {
+        Bits sure = PART(definite) != zero;
+        Part longest = WAY_STEP * ONE, greatest = zero;
         for (int i = 0; i < n; i++) {
-            double far = fabs(here->x[i][l]), unit = chain->revolute[i] || !(far > 1.0) ? 1.0 : far;
-            dx[i][l] = at->definite[l] ? dx[i][l] : 0.0;
-            longest = fabs(dx[i][l] / unit) > longest ? fabs(dx[i][l] / unit) : longest;
+            Part step = chosen(sure, PART(dx[i]), zero), far = absolute(step);
+            if (!chain->revolute[i])
+                far = far / greater(absolute(CONSTANT(here->x[i])), ONE);
+            PART(dx[i]) = step;
+            longest = greater(far, longest);
         }
+        Part factor = (WAY_STEP * ONE) / longest;
         for (int i = 0; i < n; i++) {
-            double step = dx[i][l] * (WAY_STEP / longest);
-            greatest = fabs(step) > greatest ? fabs(step) : greatest;
-            at->there.x[i][l] = clipped(here->x[i][l] + step, at->low[i][l], at->high[i][l]);
+            Part step = PART(dx[i]) * factor;
+            greatest = greater(absolute(step), greatest);
+            PART(at->there.x[i]) =
+                lesser(greater(CONSTANT(here->x[i]) + step, PART(at->low[i])), PART(at->high[i]));
         }
-        at->longest[l] = greatest;
+        PART(at->longest) = greatest;
+        PART(at->definite) = PART(definite);
     }
 }
 
-/* Whether a lane's step is taken, and how the next ones are damped; true where it has come to its end. */
-static int judged(int n, Ways *at, int l, double still, double least, long long *taken) {
+/* Which lanes' steps are taken, and how the next ones are damped; arrived: the lanes that have come to their end. */
+static void judged(int n, Ways *at, double still, double least, long long taken[LANES], long long arrived[LANES]) {
     const Slope *now = &at->here, *after = &at->there;
-    double foretold = 0.0, dx[MOST_MOVED];
+    const Part zero = {0.0};
+    double dx[MOST_MOVED][LANES];
     for (int i = 0; i < n; i++)
-        dx[i] = after->x[i][l] - now->x[i][l];
-    for (int i = 0; i < n; i++) {
-        double product = 0.0;
-        for (int j = 0; j < n; j++)
-            product += (i < j ? now->H[i][j][l] : now->H[j][i][l]) * dx[j];
-        foretold -= dx[i] * (now->gradient[i][l] + 0.5 * product);
+        FOR_PARTS PART(dx[i]) = CONSTANT(after->x[i]) - CONSTANT(now->x[i]);
+    FOR_PARTS {
+        Part foretold = zero;
+        for (int i = 0; i < n; i++) {
+            Part product = zero;
+            for (int j = 0; j < n; j++)
+                product += (i < j ? CONSTANT(now->H[i][j]) : CONSTANT(now->H[j][i])) * PART(dx[j]);
+            foretold -= PART(dx[i]) * (CONSTANT(now->gradient[i]) + 0.5 * product);
+        }
+        Part before = CONSTANT(now->f), f = CONSTANT(after->f), noise = WAY_NOISE * before + DBL_MIN;
+        Part ratio = (before - f + noise) / (greater(foretold, zero) + noise);
+        Bits better = (PART(at->definite) != zero) & (f <= before + noise) & (ratio > 1e-4);
+        Part part = 2.0 * lesser(ratio, ONE) - ONE, shrunk = greater(ONE - part * part * part, WAY_SHRINK * ONE);
+        Part damping = chosen(better, shrunk, PART(at->growth)) * PART(at->damping);
+        damping = lesser(greater(damping, least * ONE), WAY_HOPELESS * ONE);
+        PART(at->damping) = damping;
+        PART(at->growth) = chosen(better, 4.0 * ONE, 2.0 * PART(at->growth));
+        BITS(taken) = better;
+        BITS(arrived) = (better & (PART(at->longest) < still)) | ~(damping <= WAY_STUCK);
     }
-    double noise = WAY_NOISE * now->f[l] + DBL_MIN;
-    double ratio = (now->f[l] - after->f[l] + noise) / ((foretold > 0.0 ? foretold : 0.0) + noise);
-    int better = at->definite[l] && after->f[l] <= now->f[l] + noise && ratio > 1e-4;
-    double part = 2.0 * (ratio > 1.0 ? 1.0 : ratio) - 1.0, shrunk = 1.0 - part * part * part;
-    double damping = (better ? (shrunk > WAY_SHRINK ? shrunk : WAY_SHRINK) : at->growth[l]) * at->damping[l];
-    at->damping[l] = clipped(damping, least, WAY_HOPELESS);
-    at->growth[l] = better ? 4.0 : 2.0 * at->growth[l];
-    *taken = better ? -1 : 0;
-    return (better && at->longest[l] < still) || !(at->damping[l] <= WAY_STUCK);
 }
 
 /* What is known where the steps lead becomes what is known here, in the lanes that take them. */
@@ -229,18 +259,21 @@ static void taken_over(int n, Ways *at, const long long taken[LANES]) {
     }
 }
 
-/* Ways from values x (m, n) [rad | size] to targets T (m, 12), the columns x, y, z, p, within low and high (m, n).
+/* Ways from values x (m, n) [rad | size] to targets T (m, 12), the columns x, y, z, p, within low and high, of which there
+   is a row (n,) for each, or `own` is 0 and one is for all.
 
    weight: (m,) that of the orientation. x becomes where the ways end, and left (m, 2) is what f's parts are there. */
 void NAMED(gone_down)(const Chain *chain, const double *T, double *x, ptrdiff_t m, double size, const double *low,
-                      const double *high, const double *weight, int steps, double still, double least, double *left) {
+                      const double *high, int own, const double *weight, int steps, double still, double least,
+                      double *left) {
     Ways at;
     double W[12][LANES];
-    long long taken[LANES];
+    long long taken[LANES], arrived[LANES];
     ptrdiff_t next = 0, going = 0;
     int n = chain->n, over[LANES];
     if (!m)
         return;
+    memset(&at, 0, sizeof at);
     for (int l = 0; l < LANES; l++) {
         at.place[l] = -2;
         over[l] = 1;
@@ -275,22 +308,27 @@ void NAMED(gone_down)(const Chain *chain, const double *T, double *x, ptrdiff_t 
             for (int j = 0; j < 12; j++)
                 W[j][l] = T[12 * from + j];
             for (int i = 0; i < n; i++) {
-                at.low[i][l] = low[n * from + i];
-                at.high[i][l] = high[n * from + i];
+                at.low[i][l] = low[own * n * from + i];
+                at.high[i][l] = high[own * n * from + i];
                 at.there.x[i][l] = clipped(x[n * from + i], at.low[i][l], at.high[i][l]);
             }
         }
         if (!going)
             return;
         sloped(chain, W, size, at.weight, &at.there);
+        /* Of a lane that has just begun nothing is judged: what it was damped by before is put back. */
+        double damping[LANES], growth[LANES];
+        memcpy(damping, at.damping, sizeof damping);
+        memcpy(growth, at.growth, sizeof growth);
+        judged(n, &at, still, least, taken, arrived);
         for (int l = 0; l < LANES; l++) {
             if (at.made[l] == 0) {
                 taken[l] = -1;
-                over[l] = at.place[l] >= 0 && steps == 0;
-                continue;
+                arrived[l] = 0;
+                at.damping[l] = damping[l];
+                at.growth[l] = growth[l];
             }
-            over[l] = judged(n, &at, l, still, least, &taken[l]);
-            over[l] = at.place[l] >= 0 && (over[l] || at.made[l] >= steps);
+            over[l] = at.place[l] >= 0 && (arrived[l] || at.made[l] >= steps);
         }
         taken_over(n, &at, taken);
         way_step(chain, &at);
