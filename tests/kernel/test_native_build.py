@@ -92,6 +92,22 @@ def test_a_machine_without_avx2_is_not_told_of_it(build, said, tmp_path, monkeyp
     assert not any(word.endswith(("-mavx2", "_avx2.c", "_AVX2")) for command in said for word in command)
 
 
+def test_instructions_of_old_machines_are_compiled_sparingly(build, said, tmp_path, monkeypatch):
+    told = build.run
+    for machine, base in (("__x86_64__", "-O2"), ("__aarch64__", "-O3")):
+        said.clear()
+        monkeypatch.setattr(build, "run", lambda *asked, machine=machine: told(*asked) and f"#define {machine} 1\n")
+        build.compiled(SOURCES, tmp_path)
+        levels = {
+            Path(w).name: [*filter(lambda word: word.startswith("-O"), c)][-1]
+            for c in said
+            for w in c
+            if w.endswith(".c")
+        }
+        assert {levels.pop("lanes_base.c"), levels.pop("equations_base.c")} == {base}
+        assert {*levels.values()} == {"-O3"}
+
+
 def test_microsofts_compiler_is_told_in_its_words(build, said, tmp_path, monkeypatch):
     monkeypatch.setattr(build, "found_compiler", lambda: ([r"C:\VC\cl.exe"], {}))
     monkeypatch.setattr(build.sysconfig, "get_platform", lambda: "win-amd64")
@@ -99,7 +115,7 @@ def test_microsofts_compiler_is_told_in_its_words(build, said, tmp_path, monkeyp
     assert {command[0] for command in said} == {r"C:\VC\cl.exe"}
     assert all({"/fp:precise", "/O2"} <= {*command} for command in said)
     avx2 = [command for command in said if "/arch:AVX2" in command]
-    assert ["lanes_avx2.c" in " ".join(command) for command in avx2] == [True]
+    assert ["_avx2.c" in " ".join(command) for command in avx2] == [True, True]
     assert "/LD" in said[-1]
     assert not any(word.startswith("-f") for command in said for word in command)
 

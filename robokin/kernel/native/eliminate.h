@@ -6,8 +6,11 @@
    is brought to the target by Newton's steps, and counted by the same rules.
 */
 
+#include <complex.h>
+#include <string.h>
+
 #include "eigen.h"
-#include "equations.h"
+#include "motions.h"
 #include "complex_loop.h"
 #include "loop_newton.h"
 #include "paths.h"
@@ -272,7 +275,7 @@ static void candidates(const Elimination *E, const Motion *closing, Tried *tried
     Equations eq;
     Eigen matrix;
     tried->real = tried->pairs = 0;
-    if (!equations(E, closing, &eq, &matrix))
+    if (!NAMED(equations)(E, closing, &eq, &matrix))
         return;
     balance(&matrix);
     to_hessenberg(&matrix);
@@ -438,18 +441,6 @@ static void closing_of(const Elimination *E, const double *T, Motion *out) {
     inverse_of(&target, &target);
     composed(&E->last, &target, &target);
     composed(&target, &E->first, out);
-}
-
-/* What does not depend on the target. */
-void NAMED(prepared_elimination)(Elimination *E) {
-    if (E->target > 2)
-        ahead_of(E, E->links, E->ahead);
-    if (E->target != 3 && E->target != 4) {
-        behind_of(E->links, E->behind);
-        free_of_last(E->behind, E->without_last);
-    }
-    if (E->target != 5)
-        action_of(&E->links[5], E->action);
 }
 
 /* All that is found for a target T (4, 4) [m], a rigid motion. */

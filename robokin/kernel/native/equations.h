@@ -4,33 +4,11 @@
    for loops whose joints all turn. A matrix of functions (15, k) is kept with rows of sixteen.
 */
 
-#include "elimination.h"
+#include "motions.h"
 
 #include <complex.h>
 #include <math.h>
 #include <string.h>
-
-static void inverse_of(const Motion *M, Motion *out) {
-    Motion N;
-    for (int i = 0; i < 3; i++) {
-        N.t[i] = 0.0;
-        for (int j = 0; j < 3; j++) {
-            N.R[i][j] = M->R[j][i];
-            N.t[i] -= M->R[j][i] * M->t[j];
-        }
-    }
-    *out = N;
-}
-
-static void composed(const Motion *A, const Motion *B, Motion *out) {
-    Motion N;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            N.R[i][j] = A->R[i][0] * B->R[0][j] + A->R[i][1] * B->R[1][j] + A->R[i][2] * B->R[2][j];
-        N.t[i] = A->R[i][0] * B->t[0] + A->R[i][1] * B->t[1] + A->R[i][2] * B->t[2] + A->t[i];
-    }
-    *out = N;
-}
 
 /* C = A B for A (m, k) and B (k, n), n = 4 w, with rows of the given lengths. */
 static inline void product(int m, int k, int w, const double *A, int a, const double *B, int b, double *C, int c) {
@@ -114,7 +92,7 @@ static void functions_of_identity(Functions V) {
 
    By reflections, the longest of the rest first: then more rows than the rank do no harm. The rows, zero from n on, are
    overwritten. */
-static inline void spanning(int n, int k, int rank, double (*A)[16], int from, double (*Q)[16]) {
+static __attribute__((noinline)) void spanning(int n, int k, int rank, double (*A)[16], int from, double (*Q)[16]) {
     double tau[16], V[16][16];
     int width = (n + 3) & ~3;
     rank = rank < k ? rank : k;
@@ -277,13 +255,6 @@ static void twice(int k, double (*rows)[16], double (*out)[16]) {
     }
 }
 
-typedef struct {
-    Motion M[6];
-    Functions V;           /* M4^-1 J4^-1 M3^-1 on the functions of joint 4 */
-    int free, columns;     /* rows that are free of joint 0; of the vectors */
-    double basis[12][16];  /* of the vectors, row by row (columns, 12), where there are free rows */
-} Equations;
-
 /* Solves A X = B for A (n, n) and B (n, k), both in rows; whether A is regular. The result stands in B. */
 static int linear(int n, int k, double (*A)[16], double (*B)[ORDER]) {
     for (int s = 0; s < n; s++) {
@@ -329,7 +300,7 @@ static int linear(int n, int k, double (*A)[16], double (*B)[ORDER]) {
 }
 
 /* The matrix whose eigenvalues are the roots, for a target's L6; whether there is one. */
-static int equations(const Elimination *E, const Motion *closing, Equations *eq, Eigen *matrix) {
+int NAMED(equations)(const Elimination *E, const Motion *closing, Equations *eq, Eigen *matrix) {
     Functions F_own, A_own;
     double N_own[6][16], NA[6][16], E1[6][16], Ec[6][16], Es[6][16];
     const double(*F)[16] = E->ahead, (*N)[16] = E->without_last, (*A)[16] = E->action;
@@ -496,4 +467,16 @@ static int equations(const Elimination *E, const Motion *closing, Equations *eq,
     eq->free = E->free;
     eq->columns = columns;
     return 1;
+}
+
+/* What does not depend on the target. */
+void NAMED(prepared_elimination)(Elimination *E) {
+    if (E->target > 2)
+        ahead_of(E, E->links, E->ahead);
+    if (E->target != 3 && E->target != 4) {
+        behind_of(E->links, E->behind);
+        free_of_last(E->behind, E->without_last);
+    }
+    if (E->target != 5)
+        action_of(&E->links[5], E->action);
 }

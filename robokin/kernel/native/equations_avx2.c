@@ -1,0 +1,3 @@
+#define LANES_NAME _avx2
+#include "vectors.h"
+#include "equations.h"

@@ -1,0 +1,3 @@
+#define LANES_NAME _base
+#include "vectors.h"
+#include "equations.h"
