@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+from robokin.arrays import Array
 from robokin.cli.arguments import parse_numbers
 from robokin.errors import InputError, did_you_mean
 from robokin.inverse.hold import held_inside
 from robokin.model import Robot
-from robokin.model.joint_units import joint_factors
+from robokin.model.joint_units import in_units, joint_factors
 from robokin.number_text import show
 from robokin.units import Units
 
 OPTION = "--hold"
 
+ALIKE = 1e-9
+"""Values in the units that differ by less, or by this part of them, are one."""
 
-def parse_hold(texts: Sequence[str], robot: Robot, units: Units, limits: bool) -> dict[int, float]:
+
+def parse_hold(
+    texts: Sequence[str], robot: Robot, units: Units, limits: bool, start: Array | None = None
+) -> dict[int, float]:
     """The held joints, from 0, with their values in the units, of texts such as `q3=20`, `3=20` or `elbow=20`.
+
+    start: (n,) in the units, where a path starts: a joint without a value is held at its own there.
 
     Raises InputError for a joint that the robot does not have, one that is held twice, a value that is no number or,
     where `limits` count, outside the joint's limits.
@@ -25,14 +33,19 @@ def parse_hold(texts: Sequence[str], robot: Robot, units: Units, limits: bool) -
     for text in texts:
         name, equals, value = text.partition("=")
         name = name.strip()
-        if not equals or not name or not value.strip():
+        own = start is not None and not equals
+        if not name or not (own or (equals and value.strip())):
             raise InputError(f"{OPTION}: found '{text}', expected JOINT=VALUE, such as q3=20")
         joint = _joint(name, robot)
         if joint in held:
             raise InputError(f"{OPTION}: q{joint + 1} is held twice, expected one value for a joint")
         option = f"{OPTION} {name}"
         turns = bool(robot.revolute[joint])
-        (number,) = parse_numbers(value, option, [turns], units, "one value").tolist()
+        if own:
+            assert start is not None
+            number = float(start[joint])
+        else:
+            (number,) = parse_numbers(value, option, [turns], units, "one value").tolist()
         factor = float(joint_factors(robot, units)[joint])
         if limits and not held_inside(robot, joint, number * factor):
             low, high = (robot.limits[joint] / factor).tolist()
@@ -45,6 +58,19 @@ def parse_hold(texts: Sequence[str], robot: Robot, units: Units, limits: bool) -
     if held and len(held) == robot.n:
         raise InputError(f"{OPTION}: all {robot.n} joints are held, expected at least one that can move")
     return held
+
+
+def expect_held(q: Array | None, held: Mapping[int, float], robot: Robot, units: Units, option: str) -> None:
+    """Raise InputError where joint values (n,) [rad | m] that an option says are others than the held ones."""
+    if q is None:
+        return
+    values = in_units(q, joint_factors(robot, units))
+    for joint, value in held.items():
+        if abs(float(values[joint]) - value) > ALIKE * max(1.0, abs(value)):
+            raise InputError(
+                f"{option}: q{joint + 1} is {show(float(values[joint]))}, expected {show(value)}, at which {OPTION} "
+                "keeps it"
+            )
 
 
 def _joint(name: str, robot: Robot) -> int:

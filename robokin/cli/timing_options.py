@@ -13,6 +13,7 @@ from robokin.errors import InputError, shown
 
 if TYPE_CHECKING:
     from robokin.arrays import Array
+    from robokin.inverse.rounded_curves import CornerRounding
     from robokin.inverse.trajectories import Timing
     from robokin.model import Robot
     from robokin.units import Units
@@ -41,7 +42,11 @@ class TimingOptions(OptionGroup):
     )
     blend: Annotated[
         str | None,
-        option("--blend", "PART", "Past the points by parabolas that take this part of a piece, up to 1."),
+        option("--blend", "PART", "Past the points by blends that take this part of a piece, up to 1."),
+    ] = None
+    blend_radius: Annotated[
+        str | None,
+        option("--blend-radius", "R", "With --line and --arc: blends that begin at this distance to a point."),
     ] = None
     rate: Annotated[str | None, option("--rate", "HZ", "Rows a second, in place of --steps.")] = None
 
@@ -51,13 +56,17 @@ class TimingOptions(OptionGroup):
 
         if not any(value for value in vars(self).values()):
             return None
-        passing: Any = "spline" if self.spline else "blend" if self.blend is not None else "stop"
-        if self.spline and self.blend is not None:
-            raise InputError("--spline and --blend exclude each other, expected one of them")
-        if passing != "stop" and self.profile is not None:
+        named = {"spline": self.spline, "blend": self.blend, "blend-radius": self.blend_radius}
+        chosen = [name for name, value in named.items() if value not in (None, False)]
+        if len(chosen) > 1:
+            raise InputError(f"--{' and --'.join(chosen)} exclude each other, expected one of them")
+        passing: Any = chosen[0].removesuffix("-radius") if chosen else "stop"
+        if passing != "stop" and self.profile is not None and way == "joint":
             raise InputError(f"--profile is of pieces with a stop at their ends, expected it without --{passing}")
-        if passing != "stop" and way != "joint":
-            raise InputError(f"--{passing} is of paths by joints, expected it without --{way}")
+        if passing == "spline" and way != "joint":
+            raise InputError(f"--spline is of paths by joints, expected --blend or --blend-radius with --{way}")
+        if self.blend_radius is not None and way == "joint":
+            raise InputError("--blend-radius is of paths of the tool, expected --line or --arc beside it, or --blend")
         limits = motion_limits(
             robot,
             _joint_values(self.max_velocity, "--max-velocity", robot, units),
@@ -67,6 +76,16 @@ class TimingOptions(OptionGroup):
         told = {"blend": blend} if (blend := _number(self.blend, "--blend", "a part above 0 and up to 1", 1.0)) else {}
         duration = _number(self.duration, "--duration", "seconds above 0")
         return Timing(limits, profile, duration, passing, rate=_number(self.rate, "--rate", "rows a second"), **told)
+
+    def rounding(self, units: Units, way: str) -> CornerRounding | None:
+        """How the tool passes by the points between, None where it stops at them. Raises InputError."""
+        from robokin.inverse.rounded_curves import CornerRounding
+
+        part = _number(self.blend, "--blend", "a part above 0 and up to 1", 1.0)
+        radius = _number(self.blend_radius, "--blend-radius", f"a distance above 0 in {units.length}")
+        if way == "joint" or (part is None and radius is None):
+            return None
+        return CornerRounding(part or 1.0, None if radius is None else radius * units.metres)
 
 
 def _number(text: str | None, option: str, what: str, most: float = 1e9) -> float | None:

@@ -8,11 +8,8 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import InputError
-from robokin.inverse.tool_curves import Line
+from robokin.inverse.tool_curves import HALF_TURN, Line
 from robokin.spatial.screw_motions import ScrewMotion, screw_between
-
-HALF_TURN = 1e-9
-"""An angle this near to half a turn [rad] is one: either way round is as short."""
 
 FARTHEST = 1e100
 """Metres."""

@@ -18,6 +18,8 @@ from robokin.brief import Answer, Brief
 from robokin.errors import InputError, counted
 from robokin.expected import expect_finite, expect_flag, expect_whole
 from robokin.inverse.follow import ITSELF, MOST
+from robokin.inverse.hold import HeldArm
+from robokin.inverse.rounded_curves import PathBlend
 from robokin.kinematics.forward import forward_kinematics
 from robokin.kinematics.velocity import TaskName, dexterity, differential_kinematics, lost_directions, motion_task
 from robokin.model import CoupledRobot, Robot, expect_robot
@@ -103,7 +105,9 @@ class Path(Answer):
     velocity and acceleration are (m, n) [rad/s | m/s, per s²]; else these three are None. reorientation: how many steps
     at the beginning turn joints while the tool stands still, where a line goes on from no other configuration;
     turns: all such turns, also those at points between;
-    branches: those that were tried, the best first: of a line or an arc from a pose, or that does not reach its end.
+    branches: those that were tried, the best first: of a line or an arc from a pose, or that does not reach its end;
+    blends: points between that the tool passes by; choices: sentences on what might have been otherwise as well;
+    held: joints that are held, and the arm of the others, None for none: manipulability and postures are of that.
     """
 
     t: Array
@@ -122,6 +126,9 @@ class Path(Answer):
     reorientation: int = 0
     branches: tuple[PathBranch, ...] = ()
     turns: tuple[PathTurn, ...] = ()
+    blends: tuple[PathBlend, ...] = ()
+    choices: tuple[str, ...] = ()
+    held: HeldArm | None = None
 
     @property
     def complete(self) -> bool:

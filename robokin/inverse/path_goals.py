@@ -23,10 +23,12 @@ from robokin.inverse.followed_curves import joint_scale
 from robokin.inverse.frame_motions import FARTHEST
 from robokin.inverse.full_turns import equivalents, turns_of_limits
 from robokin.inverse.joint_paths import PathTask, line_task
+from robokin.inverse.rounded_curves import CornerRounding, rounded
 from robokin.inverse.solutions import Result
 from robokin.inverse.solve import solve_ik
 from robokin.inverse.tool_curves import CircularArc, Line, ToolCurve
 from robokin.kinematics.forward import forward_kinematics
+from robokin.kinematics.structure import arm_size
 from robokin.model import CoupledRobot, Robot
 from robokin.spatial.angles import circled
 
@@ -44,28 +46,37 @@ MOST_TURNED = 1000
 
 @dataclass(frozen=True, eq=False)
 class Goal:
-    """Where a path goes: joint values q (n,), or a pose T (4, 4) [m] with its task, as `solve_ik` has it."""
+    """Where a path goes: joint values q (n,), or a pose T (4, 4) [m] with its task, as `solve_ik` has it.
+
+    via: (3,) [m] a place by which the tool goes there on a circle, None for a straight line.
+    """
 
     q: Array | None = None
     T: Array | None = None
     task: str = "pose"
+    via: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Manner:
     """How a path gets there.
 
-    way: all joints together, or the tool along straight lines or an arc, which goes by the place `via` (3,) [m];
-    limits: whether it ends where a joint leaves them; follows: what follows a line, the whole pose or the position;
-    timing: None for a path without a duration, whose t is from 0 to 1; halvings: as `follow_curve` has it.
+    way: all joints together, or the tool along straight lines, or also arcs; limits: whether it ends where a joint
+    leaves them; follows: what follows a line, the whole pose or the position; timing: None for a path without a
+    duration, whose t is from 0 to 1; halvings: as `follow_curve` has it; rounding: how the tool passes by the points
+    between, None where it stops at them.
     """
 
     way: Way = "joint"
-    via: Array | None = None
     limits: bool = True
     follows: PathTask | None = None
     timing: Timing | None = None
     halvings: int = HALVINGS
+    rounding: CornerRounding | None = None
+
+
+Leg = Sequence[Goal]
+"""Goals to which the tool goes without a stop between them: one, or all where their corners are rounded."""
 
 
 def expect_near(robot: Robot, goals: Sequence[Goal]) -> None:
@@ -76,23 +87,32 @@ def expect_near(robot: Robot, goals: Sequence[Goal]) -> None:
         raise InputError("the pose is too far away for a number, expected less")
 
 
-def tool_curve(robot: Robot, start: Array, goal: Goal, manner: Manner) -> tuple[ToolCurve, PathTask | None] | str:
-    """The curve from joint values start (n,) to a goal, and what follows it; or why the goal is not reached."""
-    first = forward_kinematics(robot, start)
+def tool_curve(robot: Robot, start: Array, leg: Leg, manner: Manner) -> tuple[ToolCurve, PathTask | None] | str:
+    """The curve from joint values start (n,) to goals without a stop, and what follows it; or why one is not reached.
+
+    Raises InputError for an arc that is none, and for corners that cannot be rounded.
+    """
+    T = forward_kinematics(robot, start)
     follows = manner.follows
-    if goal.q is not None:
-        T = forward_kinematics(robot, goal.q)
-    else:
-        T, task = _asked(robot, start, goal, manner)
-        if goal.task == "position" and line_task(robot) == "position":
-            follows = follows or "position"
-        if task == "approach":
-            # The roll about the tool's axis is free: that of the solution nearest to the start.
-            found = nearest_to(robot, start, T, "approach", manner.limits)
-            if not found.solutions:
-                return found.reason or "not reached"
-            T = forward_kinematics(robot, found.solutions[0].q)
-    return (Line(first, T) if manner.via is None else CircularArc(first, manner.via, T)), follows
+    curves: list[Line | CircularArc] = []
+    for goal in leg:
+        first, T = T, np.eye(4)
+        if goal.q is not None:
+            T = forward_kinematics(robot, goal.q)
+        else:
+            T, task = _asked(robot, first, goal, manner)
+            if goal.task == "position" and line_task(robot) == "position":
+                follows = follows or "position"
+            if task == "approach":
+                # The roll about the tool's axis is free: that of the solution nearest to the start.
+                found = nearest_to(robot, start, T, "approach", manner.limits)
+                if not found.solutions:
+                    return found.reason or "not reached"
+                T = forward_kinematics(robot, found.solutions[0].q)
+        curves.append(Line(first, T) if goal.via is None else CircularArc(first, goal.via, T))
+    if manner.rounding is None:
+        return curves[0], follows
+    return rounded(curves, manner.rounding, arm_size(robot)), follows
 
 
 def points_through(robot: Robot, stages: Sequence[Goal], manner: Manner) -> list[Array] | str:
@@ -126,7 +146,7 @@ def points_through(robot: Robot, stages: Sequence[Goal], manner: Manner) -> list
 
 def _solutions(robot: Robot, last: Array, stage: Goal, manner: Manner, first: bool) -> Array | str:
     """The configurations (k, n) for a stage of a path by joints, from about joint values last (n,); or why none."""
-    T, task = _asked(robot, last, stage, manner)
+    T, task = _asked(robot, forward_kinematics(robot, last), stage, manner)
     analysis = analysis_of(robot, task)  # type: ignore[arg-type]
     near = nearest_to(robot, last, T, task, manner.limits)
     if not near.solutions:
@@ -146,12 +166,12 @@ def _solutions(robot: Robot, last: Array, stage: Goal, manner: Manner, first: bo
     return np.concatenate([near.solutions[0].q[None], turned, q] if not first else [near.solutions[0].q[None], q])
 
 
-def _asked(robot: Robot, start: Array, goal: Goal, manner: Manner) -> tuple[Array, str]:
-    """The pose (4, 4) that a goal comes to from joint values start (n,), and its task."""
+def _asked(robot: Robot, before: Array, goal: Goal, manner: Manner) -> tuple[Array, str]:
+    """The pose (4, 4) that a goal comes to from the pose `before` (4, 4), and its task."""
     assert goal.T is not None
     if goal.task == "position" and line_task(robot) == "pose":
         T = goal.T.copy()
-        T[:3, :3] = forward_kinematics(robot, start)[:3, :3]
+        T[:3, :3] = before[:3, :3]
         return T, manner.follows or line_task(robot)
     return goal.T, "approach" if goal.task == "approach" else manner.follows or line_task(robot)
 

@@ -14,6 +14,7 @@ from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_flag, expect_whole
 from robokin.inverse.follow import MOST
 from robokin.inverse.followed_curves import branch_starts, follow_curve, passable
+from robokin.inverse.joined_paths import joined
 from robokin.inverse.joint_paths import (
     Path,
     PathBranch,
@@ -25,9 +26,10 @@ from robokin.inverse.joint_paths import (
     time_law,
 )
 from robokin.inverse.path_branches import branches_of, with_chosen
-from robokin.inverse.path_goals import Goal, Manner, nearest_to, points_through, tool_curve
+from robokin.inverse.path_goals import Goal, Leg, Manner, nearest_to, points_through, tool_curve
+from robokin.inverse.rounded_curves import RoundedCurve, choices
 from robokin.inverse.solve import target_poses
-from robokin.inverse.trajectories import joined, reorientation, row_times, timed_curve, too_short, trajectory
+from robokin.inverse.trajectories import reorientation, row_times, timed_curve, too_short, trajectory
 from robokin.kinematics.forward import forward_kinematics
 from robokin.kinematics.velocity import is_singular
 from robokin.model import Robot
@@ -63,7 +65,7 @@ def follow_line(
     expect_whole(steps, "steps", 1, MOST)
     follows = None if task is None else cast(PathTask, expect_choice(task, ("pose", "position"), "task"))
     manner = Manner("line", limits=expect_flag(limits, "limits"), follows=follows)
-    return joined(_followed(robot, first, [Goal(T=target)], steps, manner))
+    return joined(_followed(robot, first, [[Goal(T=target)]], steps, manner))
 
 
 def path_through(robot: Robot, start: Array | Goal, goals: Sequence[Goal], steps: int, manner: Manner) -> Path:
@@ -76,28 +78,32 @@ def path_through(robot: Robot, start: Array | Goal, goals: Sequence[Goal], steps
     A position alone keeps the orientation of what was before, where the arm can turn its tool. A pose that is not
     reached makes a path of its start alone. steps: of the whole path by joints, of each piece of a line. A duration is
     of the whole path: pieces of a line share it like the least times that limits allow them, evenly without limits.
+    With a `rounding` the tool passes by the points between and has one time law from the start to the end.
     """
     if manner.way == "joint":
         return _by_joints(robot, start, goals, steps, manner)
-    if manner.way == "arc" and len(goals) > 1:
-        raise InputError(f"found {len(goals)} ends of an arc, expected one")
+    legs: list[Leg] = [[goal] for goal in goals]
+    if manner.rounding is not None:
+        if len(goals) == 1:
+            raise InputError("found no point between the start and the end, expected one to blend at")
+        legs, steps = [goals], expect_whole(steps * len(goals), "steps", 1, MOST)
     if isinstance(start, Goal):
-        branches = _branches(robot, start, goals, manner, False)
+        branches = _branches(robot, start, legs, manner, False)
         if not branches:
             assert start.T is not None
             found = nearest_to(robot, np.zeros(robot.n), start.T, manner.follows or line_task(robot), False)
             raise InputError(f"the start is {found.reason or 'not reached'}, expected a pose that the arm can take")
         first = branches[0].start
-        path, fraction = _along(robot, first, goals, steps, manner)
+        path, fraction = _along(robot, first, legs, steps, manner)
         return replace(path, branches=with_chosen(robot, branches, path, fraction))
-    path, fraction = _along(robot, start, goals, steps, manner)
+    path, fraction = _along(robot, start, legs, steps, manner)
     if path.complete:
         return path
-    branches = _branches(robot, Goal(T=forward_kinematics(robot, start)), goals, manner, True)
+    branches = _branches(robot, Goal(T=forward_kinematics(robot, start)), legs, manner, True)
     return replace(path, branches=with_chosen(robot, branches, path, fraction))
 
 
-def _branches(robot: Robot, first: Goal, goals: Sequence[Goal], manner: Manner, fixed: bool) -> tuple[PathBranch, ...]:
+def _branches(robot: Robot, first: Goal, legs: Sequence[Leg], manner: Manner, fixed: bool) -> tuple[PathBranch, ...]:
     """The branches of a path of the tool from a pose; none where no arm could go on and the start is `fixed`."""
     assert first.T is not None
     free = replace(manner, timing=None, halvings=TRIED_HALVINGS)
@@ -105,18 +111,19 @@ def _branches(robot: Robot, first: Goal, goals: Sequence[Goal], manner: Manner, 
     if not guess.solutions:
         return ()
     q = guess.solutions[0].q
-    asked = tool_curve(robot, q, goals[0], free)
+    asked = tool_curve(robot, q, legs[0], free)
     if isinstance(asked, str):
         return ()
     curve, follows = asked
     task = follows or line_task(robot)
-    if fixed and not (all(_attainable(robot, goal, free) for goal in goals) and passable(robot, curve, task, TRIED)):
+    attainable = not fixed or all(_attainable(robot, goal, free) for leg in legs for goal in leg)
+    if not attainable or (fixed and not passable(robot, curve, task, TRIED)):
         return ()
     starts = branch_starts(robot, curve, task)
 
     def follow(start: Array, limits: bool) -> Path:
-        paths = _followed(robot, start, goals, TRIED, replace(free, limits=limits))
-        return replace(_of_all(joined(paths), len(goals), _reached(paths)), fraction=_of_lines(paths, len(goals)))
+        paths = _followed(robot, start, legs, TRIED * len(legs[0]), replace(free, limits=limits))
+        return replace(_of_all(joined(paths), len(legs), _reached(paths)), fraction=_of_lines(paths, len(legs)))
 
     return branches_of(robot, starts, follow, manner.limits)
 
@@ -128,19 +135,19 @@ def _attainable(robot: Robot, goal: Goal, manner: Manner) -> bool:
     return bool(nearest_to(robot, np.zeros(robot.n), goal.T, manner.follows or line_task(robot), False).solutions)
 
 
-def _along(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> tuple[Path, float]:
+def _along(robot: Robot, start: Array, legs: Sequence[Leg], steps: int, manner: Manner) -> tuple[Path, float]:
     """The tool along lines or an arc from joint values start (n,), and the part of these that is followed."""
     timing = manner.timing
-    paths = _followed(robot, start, goals, steps, manner, _durations(robot, start, goals, steps, manner))
-    whole = _of_all(joined(paths, timing.rate if timing is not None else None), len(goals), _reached(paths))
-    missing = len(goals) - _reached(paths)
+    paths = _followed(robot, start, legs, steps, manner, _durations(robot, start, legs, steps, manner))
+    whole = _of_all(joined(paths, timing.rate if timing is not None else None), len(legs), _reached(paths))
+    missing = len(legs) - _reached(paths)
     if missing and timing is None:
-        whole = replace(whole, t=whole.t * _reached(paths) / len(goals))
+        whole = replace(whole, t=whole.t * _reached(paths) / len(legs))
     if missing and (timing is None or timing.rate is None):
         whole = replace(whole, steps=whole.steps + missing * steps)
     if timing is not None and timing.duration is not None:
         whole = replace(whole, duration=timing.duration)
-    return whole, _of_lines(paths, len(goals))
+    return whole, _of_lines(paths, len(legs))
 
 
 def _reached(paths: Sequence[Path]) -> int:
@@ -163,18 +170,18 @@ def _of_all(path: Path, goals: int, reached: int) -> Path:
     return replace(path, s=path.s * share, fraction=path.fraction * share, events=events, turns=turns)
 
 
-def _durations(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, manner: Manner) -> list[float] | None:
+def _durations(robot: Robot, start: Array, legs: Sequence[Leg], steps: int, manner: Manner) -> list[float] | None:
     """How long each piece takes [s], where a duration of the whole is to be shared."""
     timing = manner.timing
     if timing is None or timing.duration is None:
         return None
     # The pieces as fast as they may be say how they share the duration.
     free = replace(manner, timing=replace(timing, duration=None))
-    fastest = _followed(robot, start, goals, steps, free)
+    fastest = _followed(robot, start, legs, steps, free)
     times = [path.duration or 1.0 for path in fastest]
-    if len(times) == len(goals) == 1:
+    if len(times) == len(legs) == 1:
         return [timing.duration]
-    whole = len(times) + len(goals) - _reached(fastest)
+    whole = len(times) + len(legs) - _reached(fastest)
     longer = timing.duration / (sum(times) * whole / len(times))
     bounded = bool(np.isfinite([timing.limits.velocity, timing.limits.acceleration]).any())
     if bounded and longer < 1.0 - 1e-9:
@@ -187,7 +194,7 @@ def _durations(robot: Robot, start: Array, goals: Sequence[Goal], steps: int, ma
 def _followed(
     robot: Robot,
     start: Array,
-    goals: Sequence[Goal],
+    legs: Sequence[Leg],
     steps: int,
     manner: Manner,
     durations: Sequence[float] | None = None,
@@ -195,13 +202,13 @@ def _followed(
     """The tool to each goal, as far as it gets; before a piece perhaps a turn of joints with the tool at rest."""
     paths: list[Path] = []
     q = start
-    for goal in goals:
-        first = _begins(robot, q, goal, manner)
+    for number, leg in enumerate(legs, 1):
+        first = _begins(robot, q, leg, manner)
         if first is not q:
             turn = reorientation(robot, q, first, _in_turn(manner, paths, durations).timing, steps)
             # That the arm is singular there is said of the piece that begins there.
             paths.append(replace(turn, kind=manner.way, events=()))
-        path = _by_tool(robot, first, goal, steps, _in_turn(manner, paths, durations))
+        path = _by_tool(robot, first, leg, steps, _in_turn(manner, paths, durations), number)
         paths.append(path)
         q = path.q[-1]
         if not path.complete:
@@ -209,12 +216,12 @@ def _followed(
     return paths
 
 
-def _begins(robot: Robot, q: Array, goal: Goal, manner: Manner) -> Array:
+def _begins(robot: Robot, q: Array, leg: Leg, manner: Manner) -> Array:
     """From which configuration (n,) with the pose of q (n,) a piece begins: q itself, but at some singular poses."""
     follows = manner.follows or line_task(robot)
     if not is_singular(robot, q, "position" if follows == "position" else None):
         return q
-    first = _by_tool(robot, q, goal, TRIED, replace(manner, timing=None)).q[0]
+    first = _by_tool(robot, q, leg, TRIED, replace(manner, timing=None)).q[0]
     return first if np.any(first != q) else q
 
 
@@ -246,9 +253,9 @@ def _by_joints(robot: Robot, start: Array | Goal, goals: Sequence[Goal], steps: 
     return path if timing is not None else replace(path, duration=None, velocity=None, acceleration=None)
 
 
-def _by_tool(robot: Robot, start: Array, goal: Goal, steps: int, manner: Manner) -> Path:
-    """The tool along a line or an arc."""
-    asked = tool_curve(robot, start, goal, manner)
+def _by_tool(robot: Robot, start: Array, leg: Leg, steps: int, manner: Manner, point: int = 1) -> Path:
+    """The tool along a line or an arc to a point (from 1), or along several without a stop."""
+    asked = tool_curve(robot, start, leg, manner)
     if isinstance(asked, str):
         return replace(no_path(robot, start, asked, steps), kind=manner.way)
     curve, follows = asked
@@ -257,4 +264,6 @@ def _by_tool(robot: Robot, start: Array, goal: Goal, steps: int, manner: Manner)
         path = follow_curve(robot, start, curve, t, time_law(t), manner.limits, follows, manner.halvings)
     else:
         path = timed_curve(robot, start, curve, manner.timing, steps, manner.limits, follows)
-    return replace(path, kind=manner.way)
+    blends = curve.blends() if isinstance(curve, RoundedCurve) else ()
+    passed = tuple(one for one in blends if one.fraction <= path.fraction)
+    return replace(path, kind=manner.way, blends=passed, choices=choices(curve, point))

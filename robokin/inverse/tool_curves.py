@@ -1,7 +1,8 @@
 """Curves that a tool follows: straight lines and circular arcs, with the rotation about one fixed axis.
 
 Statement. Give the pose of the tool at the part s of a way, and its twist dx/ds there.
-Derivation. A line: the position is linear in s, the rotation turns about the axis of R_0ᵀ R_1 (slerp). An arc: the
+Derivation. A line: the position is linear in s, the rotation turns about the axis of R_0ᵀ R_1 (slerp), of half a turn
+about that whose first element that is not zero is positive. An arc: the
 circle through three places, from the first by the second to the third; the rotation as on a line.
 Degenerate case. Three places on a line, or two in one, are on no circle.
 """
@@ -20,6 +21,13 @@ STRAIGHT = 1e-6
 """The sine of the corner of three places below which they are on a line."""
 
 
+HALF_TURN = 1e-9
+"""An angle this near to half a turn [rad] is one: either way round is as short."""
+
+UNSIGNED = 1e-6
+"""Elements of its axis below this are zeros: they do not tell which way round is taken."""
+
+
 class ToolCurve(Protocol):
     """What a tool follows."""
 
@@ -29,6 +37,10 @@ class ToolCurve(Protocol):
     def twist(self, s: Array) -> Array:
         """Twists (m, 6) by s, linear before angular, in the world's axes [m, rad]."""
 
+    @property
+    def places(self) -> Array:
+        """(m,) parts of the way at which limits of velocity and acceleration are held beside even ones."""
+
 
 class SlerpedTurn:
     """Rotations from the first pose's to the last one's about a fixed axis, by the fraction s of the way."""
@@ -37,6 +49,17 @@ class SlerpedTurn:
         self.first = first
         axis, angle = axis_angle_from_rotation(first[:3, :3].T @ last[:3, :3])
         self.axis, self.angle = axis, float(angle)
+        if self.half_turn and axis[np.argmax(np.abs(axis) > UNSIGNED)] < 0.0:
+            # CornerRounding must not toss which way round it turns.
+            self.axis, self.angle = -axis, 2.0 * np.pi - self.angle
+
+    places = np.empty(0)
+    """One piece as the other is looked at in even steps."""
+
+    @property
+    def half_turn(self) -> bool:
+        """Whether it is as short the other way round: then the first element of the axis is positive."""
+        return self.angle > np.pi - HALF_TURN
 
     def rotation(self, s: Array) -> Array:
         """(m, 3, 3) at s (m,)."""
@@ -54,6 +77,7 @@ class Line(SlerpedTurn):
     def __init__(self, first: Array, last: Array) -> None:
         super().__init__(first, last)
         self.p = last[:3, 3] - first[:3, 3]
+        self.distance = float(np.linalg.norm(self.p))
 
     def at(self, s: Array) -> Array:
         """(m, 4, 4) at s (m,)."""
@@ -84,6 +108,7 @@ class CircularArc(SlerpedTurn):
         out = c - self.centre
         # In the sense of the normal the circle goes from the first place by the second to the third.
         self.sweep = float(np.arctan2(out @ side, out @ self.radius)) % (2.0 * np.pi)
+        self.distance = self.sweep * float(np.linalg.norm(self.radius))
 
     def at(self, s: Array) -> Array:
         """(m, 4, 4) at s (m,)."""

@@ -13,7 +13,6 @@ Source of the polynomials: B. Siciliano et al., Robotics: Modelling, Planning an
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
@@ -49,6 +48,13 @@ EXACT, LITTLE = 1e-9, 1e-3
 
 LOOKED_AT = 100
 """Steps of a line at least at which limits of velocity and acceleration are held."""
+
+
+TOGETHER = 1e-7
+"""Places [1] of the time that are nearer together are one."""
+
+HALVED = 50
+"""Halvings by which the time of a part of a way is found."""
 
 
 def trajectory(
@@ -129,6 +135,10 @@ def timed_curve(
     # Of few rows none may be where a joint is fastest; all of them are among those that are looked at.
     looked_at = steps * math.ceil(LOOKED_AT / steps) if bounded else steps
     tau = row_times(1.0, looked_at, None)
+    if bounded and len(curve.places):
+        tau = np.union1d(tau, time_of_parts(timing.profile, curve.places))
+        tau = tau[np.diff(tau, prepend=-1.0) > TOGETHER]
+        looked_at = len(tau) - 1
     path = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
     if timing.rate is not None and timing.duration is not None and bounded:
         least = timed_curve(robot, first, curve, replace(timing, duration=None), steps, limits, task).duration
@@ -198,57 +208,6 @@ def rows_since(timing: Timing, duration: float, steps: int) -> Array:
     return np.append(0.0, whole[whole > duration * 1e-9])
 
 
-def joined(paths: Sequence[Path], rate: float | None = None) -> Path:
-    """Paths one after the other as one, each the same part of the way; the last need not be followed to its end.
-
-    rate: the rows' [1/s]; the end of a path that is at none of its times is no row then, but for the last one's.
-    """
-    if len(paths) == 1:
-        return paths[0]
-    times, parts, events, start = [], [], [], 0.0
-    turns: list[PathTurn] = []
-    ends: list[int | None] = []
-    written = 0
-    for k, path in enumerate(paths):
-        count = rate * (start + (path.duration or 1.0)) if rate is not None else 0.0
-        off = k + 1 < len(paths) and abs(count - round(count)) > 1e-9 * max(1.0, count)
-        ends.append(-1 if off else None)
-        times.append(start + path.t)
-        parts.append((k + path.s) / len(paths))
-        events += [replace(event, fraction=(k + event.fraction) / len(paths)) for event in path.events]
-        # What a piece begins with is the last one's end, where that is a row.
-        begun = k > 0 and ends[k - 1] is None
-        since = written - begun
-        for turn in path.turns:
-            steps = max(turn.steps - off - (k > 0 and not begun), 0)
-            turns.append(replace(turn, fraction=(k + turn.fraction) / len(paths), row=since, steps=steps))
-        written += len(path) - (k > 0) - off
-        start += path.duration or 1.0
-    timed = all(path.duration is not None for path in paths)
-    last = paths[-1]
-
-    def rows(values: Iterable[Array | None]) -> Array:
-        """The rows of all paths, each without its first, which is the last one's end."""
-        return np.concatenate([np.asarray(one)[1 if k else 0 : ends[k]] for k, one in enumerate(values)])
-
-    return replace(
-        last,
-        t=rows(times) if timed else rows(times) / len(paths),
-        s=rows(parts),
-        q=rows(path.q for path in paths),
-        T=rows(path.T for path in paths),
-        fraction=(len(paths) - 1 + last.fraction) / len(paths),
-        events=tuple(events),
-        manipulability=rows(path.manipulability for path in paths),
-        reorientation=turns[0].steps if paths[0].turns else 0,
-        turns=tuple(turns),
-        steps=sum(path.steps for path in paths) - sum(end is not None for end in ends),
-        duration=start if timed else None,
-        velocity=rows(path.velocity for path in paths) if timed else None,
-        acceleration=rows(path.acceleration for path in paths) if timed else None,
-    )
-
-
 def timed_line(
     path: Path,
     curve: ToolCurve,
@@ -292,6 +251,16 @@ def unit_law(profile: Profile, tau: Array) -> tuple[Array, Array, Array]:
     free = MotionLimits(np.full(1, np.inf), np.full(1, np.inf))
     s, velocity, acceleration = timed_move(np.array([[0.0], [1.0]]), profile, free, 1.0).at(tau)
     return s[:, 0], velocity[:, 0], acceleration[:, 0]
+
+
+def time_of_parts(profile: Profile, s: Array) -> Array:
+    """The parts of the time (m,) at which a profile is at parts s (m,) of the way, to rounding."""
+    low, high = np.zeros_like(s), np.ones_like(s)
+    for _ in range(HALVED):
+        middle = 0.5 * (low + high)
+        before = unit_law(profile, middle)[0] < s
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    return np.asarray(np.where(s <= 0.0, 0.0, np.where(s >= 1.0, 1.0, high)))
 
 
 def motion_limits(robot: Robot, velocity: ArrayLike | None, acceleration: ArrayLike | None) -> MotionLimits:

@@ -11,6 +11,7 @@ import numpy as np
 from robokin.arrays import Array
 from robokin.inverse.joint_paths import Event, Path, PathBranch, PathTurn, line_task
 from robokin.inverse.path_branches import posture
+from robokin.inverse.rounded_curves import PathBlend
 from robokin.kinematics.velocity import differential_kinematics
 from robokin.model import Robot
 from robokin.model.joint_units import in_units, joint_factors
@@ -77,6 +78,7 @@ class PathRecords:
             **envelope("robot", self.robot.id, self.units),
             "kind": self.path.kind,
             "steps": path.steps,
+            **({"hold": self.held()} if path.held is not None else {}),
             **({"duration": path.duration, "fastest": self.fastest()} if self.timed else {}),
             "complete": path.complete,
             "fraction": path.fraction,
@@ -87,6 +89,8 @@ class PathRecords:
             **({"reorientation": self.reorientation()} if path.reorientation else {}),
             **({"reorientations": [self.turn(one) for one in path.turns]} if path.turns else {}),
             **({"branches": [self.branch(one) for one in path.branches]} if path.branches else {}),
+            **({"blends": [self.blend(one) for one in path.blends]} if path.blends else {}),
+            **({"choices": list(path.choices)} if path.choices else {}),
             "events": [self.event(event) for event in events],
             "path": list(self.records()),
         }
@@ -96,10 +100,11 @@ class PathRecords:
         path = self.path
         if path.kind == "joint":
             return {}
-        ends = [posture(self.robot, path.q[i]) for i in (path.reorientation, -1)]
+        robot, q = self.moving()
+        ends = [posture(robot, q[i]) for i in (path.reorientation, -1)]
         # On a singular configuration a sign is a toss: the row beside it tells.
         if len(path) - path.reorientation > 2:
-            ends = [posture(self.robot, path.q[i]) for i in (path.reorientation + 1, -2)]
+            ends = [posture(robot, q[i]) for i in (path.reorientation + 1, -2)]
         return {"branch": ends[0], "branch_at_end": ends[1]} if all(ends) else {}
 
     def reorientation(self) -> dict[str, Any]:
@@ -122,6 +127,17 @@ class PathRecords:
             "travel": in_units(one.travel, factors).tolist(),
             "ends_by": None if one.event is None else one.event.words,
             "chosen": one.chosen,
+        }
+
+    def blend(self, one: PathBlend) -> dict[str, Any]:
+        """The JSON of a point that the tool passes by."""
+        return {
+            "point": one.point,
+            "fraction": one.fraction,
+            "begins": one.begins,
+            "ends": one.ends,
+            "distance": one.distance / self.units.metres,
+            "angle": one.angle / self.units.radians,
         }
 
     def event(self, event: Event) -> dict[str, Any]:
@@ -152,7 +168,20 @@ class PathRecords:
 
     def least(self) -> float:
         """The least manipulability on the way, of the Jacobian in the length unit and radians."""
-        task: Any = "position" if self.path.kind != "joint" and line_task(self.robot) == "position" else None
+        robot, q = self.moving()
+        task: Any = "position" if self.path.kind != "joint" and line_task(robot) == "position" else None
         i = int(np.argmin(self.path.manipulability))
-        found = differential_kinematics(self.robot, self.path.q[i : i + 1], task=task)
-        return float(JacobianRecords(self.robot, self.units, "base", task).volumes(found)[0])
+        found = differential_kinematics(robot, q[i : i + 1], task=task)
+        return float(JacobianRecords(robot, self.units, "base", task).volumes(found)[0])
+
+    def moving(self) -> tuple[Robot, Array]:
+        """The arm of the joints that are not held, and their values (m, k)."""
+        held = self.path.held
+        return (self.robot, self.path.q) if held is None else (held.part, held.own(self.path.q))
+
+    def held(self) -> dict[str, float]:
+        """The joints that are held, with their values in the units."""
+        arm = self.path.held
+        assert arm is not None
+        values = in_units(arm.whole(np.zeros(len(arm.free))), joint_factors(self.robot, self.units))
+        return {f"q{j + 1}": float(values[j]) for j in arm.joints.tolist()}

@@ -239,7 +239,21 @@ def _branched() -> dict[str, Schema]:
             "chosen": flag("Whether the path takes it."),
         },
     )
+    blend = record(
+        "A point that the tool passes by.",
+        {
+            "point": whole("Which one, from 1.", 1),
+            "fraction": number("Where on the path the tool is nearest to it, from 0 to 1 [1].", 0.0),
+            "begins": number("Where the blend begins [1].", 0.0),
+            "ends": number("Where it ends [1].", 0.0),
+            "distance": number("How far from the point the tool passes [length].", 0.0),
+            "angle": number("By how much its orientation differs from the point's there [angle].", 0.0),
+        },
+    )
     return {
+        "hold": mapping(number("The joint's value [joint]."), "Joints that are held (--hold), by q and number."),
+        "blends": items(blend, "The points between that the tool passes by (--blend, --blend-radius)."),
+        "choices": items(text("A sentence."), "What might have been otherwise as well: half a turn, the other way."),
         "branch": text("The name of the posture that a line or an arc begins in."),
         "branch_at_end": text("The name of that which it ends in: another one after a singular configuration."),
         "reorientation": turn,

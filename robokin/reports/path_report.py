@@ -19,6 +19,9 @@ from robokin.tables.written_rows import csv_header, csv_rows, json_document, jso
 SAME = 1e-6
 """Joint values [rad | m] that differ by less are one."""
 
+ALIKE = 1e-9
+"""Orientations that differ by a smaller angle [rad] are one."""
+
 SHOWN = 11
 """Rows of the table: the whole path is for CSV, JSON lines and arrays."""
 
@@ -75,6 +78,8 @@ class PathReport:
     def end_notes(self) -> Iterator[str]:
         """Sentences on where the path ends, and on its postures and branches."""
         path = self.records.path
+        yield from self.blend_notes()
+        yield from path.choices
         if not path.complete:
             rows = counted(len(path.t), "row")
             yield f"it can be followed up to {show(path.fraction)} of the path: {rows} of {path.steps + 1}"
@@ -88,6 +93,14 @@ class PathReport:
         if postures and postures["branch"] != postures["branch_at_end"]:
             yield f"the posture changes from {postures['branch']} to {postures['branch_at_end']} on the way"
         yield from self.branch_notes()
+
+    def blend_notes(self) -> Iterator[str]:
+        """A sentence on each point that the tool passes by."""
+        units = self.records.units
+        for one in self.records.path.blends:
+            blend = self.records.blend(one)
+            angle = f", turned by {show(blend['angle'])} {units.angle}" if one.angle > ALIKE else ""
+            yield f"passes point {one.point} at {show(blend['distance'])} {units.length}{angle}"
 
     def branch_notes(self) -> Iterator[str]:
         """Sentences on the branches that were tried."""
@@ -130,6 +143,10 @@ class PathReport:
             entries.insert(1, ("duration", f"{show(path.duration)} s"))
             for name in ("velocity", "acceleration"):
                 entries.append((f"greatest {name}", "  ".join(f"{value:.6g}" for value in fastest[name])))
+        if path.held is not None:
+            entries.insert(
+                1, ("held", "  ".join(f"{name} = {show(value)}" for name, value in self.records.held().items()))
+            )
         entries += [("note", sentence) for sentence in self.notes()]
         rest = f"{what}, lengths in {units.length}, angles in {units.angle}"
         yield render(heading(robot.name, rest), "", pairs(entries))

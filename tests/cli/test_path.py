@@ -207,7 +207,7 @@ def test_an_arc(call):
         (["--max-velocity", "10", "--duration", "0.1"], "found a duration of 0.1 s, expected at least 5.625 s"),
         (["--spline", "--blend", "0.2"], "--spline and --blend exclude each other"),
         (["--spline", "--profile", "cubic"], "--profile is of pieces with a stop"),
-        (["--spline", "--line"], "--spline is of paths by joints, expected it without --line"),
+        (["--spline", "--line"], "--spline is of paths by joints, expected --blend or --blend-radius with --line"),
         (["--blend", "2"], "--blend: found '2', expected a part above 0 and up to 1"),
         (["--profile", "quintc"], "--profile: found 'quintc'"),
         (["--rate", "1e12"], "--rate: found '1e12'"),
@@ -280,3 +280,65 @@ def test_a_turn_in_the_middle_stands_in_the_document_and_among_the_notes(call):
     places = [row["position"] for row in document["path"][4:9]]
     assert all(place == pytest.approx(places[0]) for place in places)
     assert "at 0.333333 of the path: joints 4 and 6 turn, in 4 steps" in " ".join(call(*words).text.split())
+
+
+def test_corners_are_rounded(call):
+    """From the law: a right angle is passed at 3/16 √2 of the radius."""
+    ends = ["--to", "Trans(-391.8,-133.3,487.8) RPY(90,0,-90)", "--to", "Trans(-391.8,-133.3,387.8) RPY(90,0,-90)"]
+    path = ["path", "ur5e", "--from", "0,-90,90,0,90,0", *ends, "--duration", "2", "--steps", "4"]
+    document = call(*path, "--line", "--blend-radius", "20", "--json").json
+    (blend,) = document["blends"]
+    assert blend["distance"] == pytest.approx(20 * 3 / 16 * 2**0.5, abs=1e-6) and blend["angle"] < 1e-9
+    assert (blend["point"], document["steps"], document["complete"]) == (1, 8, True)
+    assert blend["begins"] == pytest.approx(0.4) and blend["ends"] == pytest.approx(0.6)
+    said = call(*path, "--line", "--blend-radius", "20", "-f", "csv")
+    assert said.err == "robokin: passes point 1 at 5.303301 mm\n"
+    part = call(*path, "--line", "--blend", "0.4", "--json").json
+    assert part["blends"][0]["distance"] == pytest.approx(blend["distance"])
+    mixed = call(*path, "--arc", "-441.8,-133.3,507.8", "--arc", "line", "--blend", "0.4", "--json").json
+    assert (mixed["kind"], len(mixed["blends"])) == ("arc", 1)
+    refused(
+        call(*path, "--line", "--blend-radius", "120"), "a blend radius of 0.12 m does not fit between", "at most 0.1"
+    )
+
+
+def test_half_a_turn_is_said(call):
+    document = call("path", "ur5e", "--from", "0,-90,90,0,90,0", "--pose", "Trans(-491.8,-133.3,487.8) RPY(90,0,90)",
+                    "--line", "--json").json  # fmt: skip
+    assert document["choices"] == ["to point 1 the tool turns by half a turn, which is as short the other way round"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [(["--line", "--blend-radius", "0"], "--blend-radius: found '0', expected a distance above 0 in mm"),
+     (["--line", "--blend-radius", "20", "--blend", "0.2"], "--blend and --blend-radius exclude each other"),
+     (["--blend-radius", "20"], "--blend-radius is of paths of the tool"),
+     (["--arc", "1,2,3", "--arc", "line"], "--arc: found 2 places for 1 end, expected one --arc"),
+     (["--to", END, "--arc", "1,2,3"], "--arc: found 1 place for 2 ends, expected an --arc for each --to"),
+     (["--arc", "line"], "--arc: found 'line' alone"),
+     (["--line", "--blend", "0.5"], "found no point between the start and the end")],
+)  # fmt: skip
+def test_slips_of_blends_are_told(call, words, said):
+    refused(call(*FROM, "--to", END, *words), said)
+
+
+HELD = ["path", "panda", "--from", "0,-30,0,-100,0,90,0", "--xyz", "400,100,500", "--line", "--steps", "4"]
+
+
+def test_a_joint_is_held(call):
+    table = call(*HELD, "--hold", "q3", "-f", "csv")
+    assert (table.status, table.err) == (0, "") and not table.numbers[:, 3].any()
+    document = call(*HELD, "--hold", "q3=0", "--json").json
+    assert document["hold"] == {"q3": 0} and [row["q"] for row in document["path"]] == table.numbers[:, 1:8].tolist()
+    assert "held" in call(*HELD, "--hold", "3").text
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [(["--hold", "q3=10"], "--from: q3 is 0, expected 10, at which --hold keeps it"),
+     (["--hold", "q9=10"], "--hold: Franka Emika Panda has no joint 'q9'"),
+     (["--hold", "q3="], "--hold: found 'q3=', expected JOINT=VALUE"),
+     (["--hold", "q3", "--hold", "3"], "--hold: q3 is held twice")],
+)  # fmt: skip
+def test_slips_of_held_joints_are_told(call, words, said):
+    refused(call(*HELD, *words), said)

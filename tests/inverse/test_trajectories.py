@@ -12,12 +12,13 @@ import pytest
 import robokin
 from robokin.errors import InputError
 from robokin.inverse.followed_curves import follow_curve
+from robokin.inverse.joined_paths import joined
 from robokin.inverse.path_goals import Goal, Manner
 from robokin.inverse.paths_to_poses import path_through
 from robokin.inverse.time_profiles import MotionLimits, timed_move
 from robokin.inverse.timed_curves import TimedCurve
 from robokin.inverse.tool_curves import CircularArc
-from robokin.inverse.trajectories import Timing, joined, motion_limits, row_times, trajectory, unit_law
+from robokin.inverse.trajectories import Timing, motion_limits, row_times, trajectory, unit_law
 
 FREE = MotionLimits(np.full(3, np.inf), np.full(3, np.inf))
 PROFILES = ("cubic", "quintic", "trapezoidal")

@@ -13,7 +13,7 @@ from robokin.cli.options import RobotArgument, choose, option, whole_number
 from robokin.cli.statuses import DONE, NO, say
 from robokin.cli.target_options import TargetOptions
 from robokin.cli.timing_options import TimingOptions
-from robokin.errors import InputError
+from robokin.errors import InputError, counted
 
 if TYPE_CHECKING:
     from robokin.inverse.path_goals import Goal
@@ -28,6 +28,10 @@ TRANSFORM = re.compile(r"[A-Z]\w*\s*\(")
 
 STEPS = 100
 """Steps when nobody says how many."""
+
+
+STRAIGHT = "line"
+"""What --arc says of a piece that is straight."""
 
 
 def command(
@@ -49,7 +53,8 @@ def command(
     ] = False,
     line: Annotated[bool, typer.Option("--line", help="The tool in a straight line, on one branch.")] = False,
     arc: Annotated[
-        str | None, option("--arc", "X,Y,Z", "The tool along the circle by this place, on one branch.")
+        list[str] | None,
+        option("--arc", "X,Y,Z", "The tool along the circle by this place; one for each --to, or 'line'."),
     ] = None,
     task: Annotated[
         str | None,
@@ -59,6 +64,10 @@ def command(
             "What follows the line: pose or position.  [default: position for arms that place a point, else pose]",
             words(*TASKS),
         ),
+    ] = None,
+    hold: Annotated[
+        list[str] | None,
+        option("--hold", "JOINT=VALUE", "Fix a joint, such as q3=20, or q3 where it starts; repeatable."),
     ] = None,
     plot: Annotated[
         str | None,
@@ -93,9 +102,11 @@ def command(
         robokin path planar2r --from 0,10 --to 40,20 --to 20,80 --duration 3 --spline
         robokin path planar2r --from 30,40 --xy -0.9,0.1 --line --duration 2 -f csv
         robokin path puma560 --from home --xyz -300,700,200 --line --plot line.html
+        robokin path planar2r --from 30,40 --to 60,30 --to 20,80 --line --blend 0.5
+        robokin path panda --from 0,-30,0,-100,0,90,0 --xyz 400,100,400 --line --hold q3
     """
-    from robokin.cli.targets import parse_place
     from robokin.inverse.follow import MOST
+    from robokin.inverse.held_paths import path_with_held_joints
     from robokin.inverse.path_goals import Manner, expect_near
     from robokin.inverse.paths_to_poses import path_through
     from robokin.pictures.picture_files import MOVING, picture_ending
@@ -106,8 +117,8 @@ def command(
     kind = output.kind
     if plot is not None:
         picture_ending(plot, "--plot", MOVING)
-    way: Any = "line" if line else "arc" if arc is not None else "joint"
-    chosen_ways = [name for name, flag in (("--joint", joint), ("--line", line), ("--arc", arc is not None)) if flag]
+    way: Any = "line" if line else "arc" if arc else "joint"
+    chosen_ways = [name for name, flag in (("--joint", joint), ("--line", line), ("--arc", arc)) if flag]
     if len(chosen_ways) > 1:
         raise InputError(f"{' and '.join(chosen_ways)} exclude each other, expected one of them")
     if task is not None and way == "joint":
@@ -124,9 +135,16 @@ def command(
         raise InputError("there is no end, expected --to, --pose, --matrix, --xyz or --xy")
     goals = [_goal(text, model, units, "--to") for text in to or []] or [_target(target.texts, model, units)]
     expect_near(model, (begin, *goals))
-    via = None if arc is None else parse_place(arc, "--arc", model, units)
-    manner = Manner(way, via, not no_limits, chosen, timing.read(model, units, way))
-    path = path_through(model, begin if begin.q is None else begin.q, goals, count, manner)
+    goals = _with_places(goals, arc or [], model, units)
+    timed, rounding = timing.read(model, units, way), timing.rounding(units, way)
+    manner = Manner(way, not no_limits, chosen, timed, rounding=rounding)
+    held = _held(hold or [], model, units, manner.limits, [("--from", begin), *(("--to", goal) for goal in goals)])
+    start = begin if begin.q is None else begin.q
+    path = (
+        path_with_held_joints(model, held, start, goals, count, manner)
+        if held
+        else path_through(model, start, goals, count, manner)
+    )
     answer = PathReport(PathRecords(path, units), goals[-1].q if way != "joint" else None)
     if kind not in ("table", "json"):
         for sentence in answer.notes():
@@ -159,6 +177,41 @@ def _goal(text: str, robot: Robot, units: Units, name: str) -> Goal:
     for note in found.notes:
         say(note)
     return Goal(T=found.T, task=found.task)
+
+
+def _held(
+    texts: list[str], robot: Robot, units: Units, limits: bool, goals: list[tuple[str, Goal]]
+) -> dict[int, float]:
+    """The held joints (from 0) and their values [rad | m], which those of the goals must be, by their options."""
+    from robokin.cli.configurations import note_held_units
+    from robokin.cli.held_joints import expect_held, parse_hold
+    from robokin.model.joint_units import in_units, joint_factors
+
+    factors, start = joint_factors(robot, units), goals[0][1].q
+    held = parse_hold(texts, robot, units, limits, None if start is None else in_units(start, factors))
+    if held:
+        note_held_units(held, robot, units)
+    for said, goal in goals:
+        expect_held(goal.q, held, robot, units, said)
+    return {joint: value * float(factors[joint]) for joint, value in held.items()}
+
+
+def _with_places(goals: list[Goal], texts: list[str], robot: Robot, units: Units) -> list[Goal]:
+    """The goals, each with the place by which an arc goes to it, if one does."""
+    from dataclasses import replace
+
+    from robokin.cli.targets import parse_place
+
+    if not texts:
+        return goals
+    if len(texts) != len(goals):
+        ends, places = counted(len(goals), "end"), counted(len(texts), "place")
+        expected = "an --arc for each --to, 'line' for a straight piece" if len(goals) > 1 else "one --arc"
+        raise InputError(f"--arc: found {places} for {ends}, expected {expected}")
+    vias = [None if text.strip() == STRAIGHT else parse_place(text, "--arc", robot, units) for text in texts]
+    if not any(via is not None for via in vias):
+        raise InputError(f"--arc: found '{STRAIGHT}' alone, expected a place on a circle, or --line")
+    return [replace(goal, via=via) for goal, via in zip(goals, vias, strict=True)]
 
 
 def _target(texts: dict[str, str | None], robot: Robot, units: Units) -> Goal:
