@@ -71,8 +71,18 @@ class PathRecords:
                 record |= {"velocity": row[n + 7 : 2 * n + 7], "acceleration": row[2 * n + 7 :]}
             yield record
 
+    def fields(self) -> list[tuple[str, int]]:
+        """What a record of a row has, and how many numbers each; 0 for one alone."""
+        n = self.robot.n
+        fields = [("t", 0), ("q", n), ("position", 3), ("rpy", 3)]
+        return fields + ([("velocity", n), ("acceleration", n)] if self.timed else [])
+
     def document(self) -> dict[str, Any]:
         """The whole path with its summary."""
+        return {**self.summary(), "path": list(self.records())}
+
+    def summary(self) -> dict[str, Any]:
+        """The document without the rows."""
         path, events = self.path, self.path.events
         return {
             **envelope("robot", self.robot.id, self.units),
@@ -92,7 +102,6 @@ class PathRecords:
             **({"blends": [self.blend(one) for one in path.blends]} if path.blends else {}),
             **({"choices": list(path.choices)} if path.choices else {}),
             "events": [self.event(event) for event in events],
-            "path": list(self.records()),
         }
 
     def postures(self) -> dict[str, str]:

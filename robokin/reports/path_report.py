@@ -14,7 +14,8 @@ from robokin.inverse.followed_curves import joint_scale
 from robokin.number_text import show
 from robokin.records.envelope import envelope
 from robokin.records.path_records import PathRecords
-from robokin.tables.written_rows import csv_header, csv_rows, json_document, json_line
+from robokin.tables.number_records import document_with_rows, json_row_lines
+from robokin.tables.written_rows import csv_header, csv_rows
 
 SAME = 1e-6
 """Joint values [rad | m] that differ by less are one."""
@@ -44,9 +45,10 @@ class PathReport:
             yield csv_header(self.records.columns()) + csv_rows(self.records.rows())
         elif kind == "jsonl":
             head = envelope("robot", self.records.robot.id, self.records.units)
-            yield b"".join(json_line({**head, **record}) for record in self.records.records())
+            yield from json_row_lines(head, self.records.fields(), self.records.rows())
         elif kind == "json":
-            yield json_document(self.records.document())
+            records = self.records
+            yield from document_with_rows(records.summary(), "path", records.fields(), records.rows())
         else:
             yield from self.page()
 

@@ -21,6 +21,9 @@ STEERING = re.compile(r"[\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]"
 """Characters that steer a terminal or the order of reading, and that JSON need not escape but may."""
 
 
+WIDTH = 80
+"""Columns of a line of a document that may stay one."""
+
 ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 """Made once: json.dumps makes one for each document."""
 
@@ -82,7 +85,7 @@ def _pretty(value: Any, indent: int) -> str:
     if not isinstance(value, (dict, list)) or not value:
         return flat
     nested = [item for item in (value.values() if isinstance(value, dict) else value) if isinstance(item, (dict, list))]
-    short = len(flat) + indent <= 80 and not any(isinstance(item, dict) for item in nested)
+    short = len(flat) + indent <= WIDTH and not any(isinstance(item, dict) for item in nested)
     if not nested or short:
         return flat
     inner = " " * (indent + 2)
