@@ -13,8 +13,8 @@ from robokin.formats.number_expressions import Parser, Scope, Value
 DEGREE_SIGNS = "°º˚⁰∘"
 DASHES = "−–—‒‐‑﹣－"
 GREEK = {
-    "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "θ": "theta", "ϑ": "theta", "φ": "phi", "ϕ": "phi",
-    "ψ": "psi", "ω": "omega", "λ": "lambda", "σ": "sigma", "π": "pi", "ε": "epsilon", "ρ": "rho", "ℓ": "l",
+    "α": "alpha", "⍺": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "θ": "theta", "ϑ": "theta", "φ": "phi",
+    "ϕ": "phi", "ψ": "psi", "ω": "omega", "λ": "lambda", "σ": "sigma", "π": "pi", "ε": "epsilon", "ρ": "rho", "ℓ": "l",
 }  # fmt: skip
 LATEX = (
     (r"\\(?:SI|qty)\s*\{([^{}]*)\}\s*\{([^{}]*)\}", r"\1 \2"),
@@ -58,10 +58,12 @@ EMPHASIS = (
 
 OF_CODE = (
     (re.compile(r"\bM_PI_([24])\b"), r"(pi/\1)"),
-    (re.compile(r"(?<!\w)(?:(?:math|np|numpy|sympy|sp|Math)\.|M_)?(?:pi|PI|Pi)\b"), "pi"),
+    (re.compile(r"(?<!\w)(?:[A-Za-z]\w{0,20}\.|M_)?(?:pi|PI|Pi)\b"), "pi"),
     (re.compile(r"(?<!\w)self\.(?=[A-Za-z])"), ""),
     (re.compile(r"(?<!\w)arc(sin|cos|tan)(2?)(?=\s*\()"), r"a\1\2"),
+    (re.compile(r"(?<![\w.])[A-Za-z]\w{0,20}\.(?=(?:sqrt|a?(?:sin|cos|tan)|atan2|abs)\()"), ""),
     (re.compile(r"(?<!\w)(q|th|theta|t)\s?\((\d{1,3})\)", re.IGNORECASE), r"\1\2"),
+    (re.compile(r"(?<!\w)(?:jA|joints?|angles?|joint_angles?)\s?\((\d{1,3})\)"), r"q\1"),
 )
 """How programs write what a description names otherwise."""
 
@@ -113,6 +115,7 @@ def plain_text(text: str) -> str:
     text = "".join(letter if letter in "°…" else unicodedata.normalize("NFKC", letter) for letter in text)
     for dash in DASHES:
         text = text.replace(dash, "-")
+    text = text.replace("∗", "*")
     for letter, name in GREEK.items():
         text = text.replace(letter, name).replace(letter.upper(), name) if letter != "ℓ" else text.replace(letter, name)
     text = re.sub(r"\^\s*\{?o\}?(?!\w)", "°", text)
@@ -131,11 +134,13 @@ def pasted_cell(text: str, *, decimal_commas: bool = False) -> PastedCell:
         return PastedCell("")
     if VARIABLE.fullmatch(text):
         return PastedCell("", (), True)
-    starred = bool(re.search(r"[A-Za-z]\w*\s*\*+(?=\s*(?:$|[-+)]))|^\s*\*+\s*\w", text))
+    text = re.sub(r"\b(theta|q|d)\s?\*\s?_?(\d{1,2})\b(?!\s*[\w.(])", r"\1\2*", text)  # θ∗1 as a PDF is copied
+    remarked = False
+    if match := re.search(r"\s*\*{0,2}\(\s*var(?:iable|\.)?\s*\)\*{0,2}", text, re.IGNORECASE):
+        remarked, text = True, text[: match.start()] + text[match.end() :]
+    starred = remarked or bool(re.search(r"[A-Za-z]\w*\s*\*+(?=\s*(?:$|[-+)]))|^\s*\*+\s*\w", text))
     text = re.sub(r"([A-Za-z]\w*)\s*\*+(?=\s*(?:$|[-+)]))", r"\1", text)
     text = re.sub(r"^\s*\*+\s*", "", text)
-    if match := re.search(r"\s*\(\s*var(?:iable|\.)?\s*\)", text, re.IGNORECASE):
-        starred, text = True, text[: match.start()] + text[match.end() :]
     if decimal_commas:
         text = re.sub(r"(?<=\d),(?=\d)", ".", text)
     for written, meant in OF_CODE:

@@ -8,12 +8,26 @@ from robokin.errors import InputError
 from robokin.formats.pasted_headings import TABLE, heading_of
 from robokin.formats.pasted_row import PastedRow
 
-LINK = re.compile(r"\b(?:(Revolute|Prismatic)(M?)(?:DH)?|Link)\s*\(")
+LINK = re.compile(r"\b(?:(Revolute|Prismatic)(M?)(?:DH)?|(DH)?Link)\s*\(")
 LISTED = re.compile(r"\s*\[([^\[\]]{1,400})\]([^;\n]{0,80})")
-VECTOR = re.compile(r"(?<![\w.])([A-Za-z][\w.]{0,40})\s*=\s*(?:[\w.]{1,20}\()?['\"]?[\[(]([^\[\]=]{1,600})\]")
+VECTOR = re.compile(
+    r"(?<![\w.])['\"]?([A-Za-z][\w.]{0,40})['\"]?\s*[=:]\s*"
+    r"(?:(?:[\w.]{1,20}\()?['\"]?[\[(]([^\[\]=]{1,600})\]|[\w.]{0,20}\bsymbols\(['\"]([^'\"]{1,600})['\"])"
+)
 MATRIX = re.compile(r"=\s*(?:[\w.]{1,40}\()?\s*[\[{]|^[ \t]*[\[{]\s{0,40}[\[{]", re.MULTILINE)
 GROUP = re.compile(r"[\[{]([^\[\]{}]{3,4000})[\]}]")
 COMMENT = re.compile(r"(?:%|#|//)(.*)")
+INDEXED = re.compile(r"(?<![\w.])(?:self\.)?([A-Za-z]\w{0,20})\[\s*(\d{1,2})\s*\]")
+CALLED_Q = ("q", "qs", "qsym", "th", "theta", "thetas", "t", "joints", "joint", "angles", "joint_angles", "symbols")
+"""What a program calls the list of its joints' variables."""
+
+RECORD = re.compile(r"\{|\b\w{1,30}\(")
+FIELD = re.compile(r"['\"]?(theta|d|a|alpha|offset|type)['\"]?\s*[=:]\s*(.*)", re.DOTALL)
+SYMBOL = re.compile(r"(?:\w{1,20}\.)?[sS]ymbols?\(\s*['\"]([^'\"]{1,40})['\"][^()]{0,60}\)")
+ENTRY = re.compile(r"(?<![\w.])['\"]?(?:self\.)?(alpha|al|a|d|q|theta|th)_?(\d{1,2})['\"]?\s*:\s*")
+LIMITED = re.compile(r"(?m)^\s*(?:self\.)?(\w{1,40}(?:\(\d{1,2}\)|\[\d{1,2}\])?)\.qlim\s*=\s*([^\n;]{1,200})")
+ASSIGNED_TO = re.compile(r"(?:self\.)?(\w{1,40}(?:\(\d{1,2}\)|\[\d{1,2}\])?)\s*=\s*[\w.]{0,40}$")
+CONTINUED = re.compile(r"\.\.\.[^\n]{0,400}\n")
 LINK_COLUMNS = ("theta", "d", "a", "alpha", "sigma", "offset")
 """What `Link([…])` of the Robotics Toolbox takes, in order (P. Corke, Robotics, Vision and Control, chapter 7)."""
 
@@ -32,17 +46,31 @@ def code_rows(text: str) -> tuple[list[PastedRow], list[str]] | None:
     lines = text.split("\n")
     if sum("|" in line for line in lines) > 1 or "&" in text:
         return None
-    bare = "\n".join(COMMENT.sub("", line) for line in lines)
-    for reader in (_links, _vectors, _matrix):
+    bare = _indexed("\n".join(COMMENT.sub("", line) for line in lines))
+    for reader in (_links, _records, _entries, _vectors, _matrix):
         rows, beside = reader(bare, text)
         if len(rows) > 1:
             return rows, [*beside, *(line for line in lines if not GROUP.search(line) and not LINK.search(line))]
     return None
 
 
+def _indexed(text: str) -> str:
+    """A program whose lists' entries are names: the joints' variables from q1 on, others as they are counted."""
+    found = INDEXED.findall(text)
+    first = {name: min(int(index) for called, index in found if called == name) for name, _ in found}
+
+    def named(entry: re.Match[str]) -> str:
+        if entry[1].lower() in CALLED_Q:
+            return f"q{int(entry[2]) + (first[entry[1]] == 0)}"
+        return f"{entry[1]}{entry[2]}"
+
+    return INDEXED.sub(named, text)
+
+
 def _links(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
     """The rows of links of a toolbox, such as `Link([0 0.4 0.025 pi/2])` and `RevoluteDH(d=0.4, a=0.025)`."""
     rows, conventions = [], set()
+    limits = {name: _plain(pair) for name, pair in LIMITED.findall(bare)}
     for match in LINK.finditer(bare):
         line, rest = _line(bare, match.start()), bare[match.end() : match.end() + MAX_CALL]
         told, words = _listed(listed, line) if (listed := LISTED.match(rest)) else _arguments(rest)
@@ -50,15 +78,43 @@ def _links(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
             raise InputError(f"line {line}: found a link without numbers, expected its theta, d, a and alpha")
         if told.get("flip", "False") not in ("False", "false", "0"):
             raise InputError(f"line {line}: found a link with flip, expected links that turn the way of their axis")
-        slides = match[1] == "Prismatic" or "prismatic" in words or told.get("sigma", "0") == "1"
+        if (owner := ASSIGNED_TO.search(bare[: match.start()])) and owner[1] in limits:
+            told.setdefault("qlim", limits[owner[1]])
+        slides = _slides(match, told, words, bool(listed), line)
         free = "d" if slides else "theta"  # whatever number stands there
         told[free] = told[free] if re.search(r"[A-Za-z]", told.get(free, "").replace("pi", "")) else ""
         rows.append(_row(line, told, "P" if slides else "R"))
-        said = "standard" if match[1] or "standard" in words else ""
-        conventions.add("modified" if match[2] or "modified" in words else said)
+        said = "standard" if match[1] or match[3] or "standard" in words else ""
+        modified = match[2] or "modified" in words or told.get("mdh", "0") in ("1", "True")
+        conventions.add("modified" if modified else said)
     if "modified" in conventions and len(conventions) > 1:
         raise InputError("found links in the modified convention and others, expected one convention")
     return _with_headings(rows), [f"{name} convention" for name in sorted(conventions) if name]
+
+
+def _slides(match: re.Match[str], told: dict[str, str], words: set[str], listed: bool, line: int) -> bool:
+    """Whether a link is that of a sliding joint. Raises InputError where it is left open.
+
+    `Link('theta', 0, 'a', 1, …)` slides, as its angle is a constant (P. Corke, Robotics Toolbox, Link.m); an angle that
+    is given to a link that turns is dropped there, and an offset elsewhere (ikpy).
+    """
+    if match[1] or {"prismatic", "revolute"} & words or "sigma" in told:
+        return match[1] == "Prismatic" or "prismatic" in words or told.get("sigma") == "1"
+    theta = told.get("theta", "")
+    if listed or not theta:
+        return False
+    if not match[3] and "=" not in match.string[match.end() : match.end() + MAX_CALL].split(")")[0]:
+        if "d" in told:
+            raise InputError(
+                f"line {line}: found a link with theta and d, expected d alone where it turns, theta where it slides"
+            )
+        return True
+    if not re.fullmatch(r"[-+]?0*\.?0*|[A-Za-z]\w*", theta) or theta == "pi":
+        raise InputError(
+            f"line {line}: found theta {theta} of a link that turns, expected it as offset (the Robotics Toolbox "
+            "drops it, ikpy adds it)"
+        )
+    return False
 
 
 def _listed(match: re.Match[str], line: int) -> tuple[dict[str, str], set[str]]:
@@ -72,9 +128,9 @@ def _listed(match: re.Match[str], line: int) -> tuple[dict[str, str], set[str]]:
 def _row(line: int, told: dict[str, str], kind: str) -> PastedRow:
     """A link as a row: its type, theta, d, a, alpha, offset and limits."""
     limits = told.get("qlim", "")
-    if pair := re.fullmatch(r"[^\[]*\[\s*([^\[\],\s]+)[\s,]+([^\[\],\s]+)\s*\]\)?(\s*\*\s*(?:pi/180|deg))?", limits):
-        degrees = "°" if pair[3] else ""
-        limits = f"{pair[1]}{degrees} to {pair[2]}{degrees}"
+    if pair := re.fullmatch(r"([^\[]*)\[\s*([^\[\],\s]+)[\s,]+([^\[\],\s]+)\s*\]\)?(\s*\*\s*(?:pi/180|deg))?", limits):
+        degrees = "°" if pair[4] or re.search(r"(?:deg2rad|radians)\($", pair[1].strip()) else ""
+        limits = f"{pair[2]}{degrees} to {pair[3]}{degrees}"
     return PastedRow(line, (kind, *(told.get(name, "") for name in ("theta", "d", "a", "alpha", "offset")), limits))
 
 
@@ -85,7 +141,7 @@ def _with_headings(rows: list[PastedRow]) -> list[PastedRow]:
 
 def _arguments(text: str) -> tuple[dict[str, str], set[str]]:
     """What a call is given by name, up to its closing parenthesis, and the words that stand alone."""
-    parts = _parted(text, ",")
+    parts = _parted(CONTINUED.sub(" ", text), ",")
     told: dict[str, str] = {}
     words: set[str] = set()
     k = 0
@@ -103,14 +159,64 @@ def _arguments(text: str) -> tuple[dict[str, str], set[str]]:
     return (told if {"d", "a", "alpha", "theta", "offset"} & {*told} else {}), words
 
 
+def _records(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
+    """The rows of `{"d": 0.4, "a": 0, "alpha": pi/2}` and `Joint(d=0.4, a=0, alpha=pi/2)`, each with the same names."""
+    found: list[tuple[int, dict[str, str]]] = []
+    for match in RECORD.finditer(bare):
+        parts = _parted(bare[match.end() : match.end() + MAX_CALL], ",")
+        fields = [field for part in parts if (field := FIELD.fullmatch(part))]
+        told = {field[1]: SYMBOL.sub(r"\1", _plain(field[2])) for field in fields}
+        if {"d", "a", "alpha"} <= {*told} and len(told) == len(fields):
+            found.append((_line(bare, match.start()), told))
+    if len(found) < 2:
+        return [], []
+    names = [*found[0][1]]
+    for line, told in found:
+        if {*told} != {*names}:
+            raise InputError(f"line {line}: found {', '.join(told)}, expected {', '.join(names)} as in the first")
+    rows = [PastedRow(line, tuple(told[name] for name in names)) for line, told in found]
+    return [PastedRow(found[0][0], tuple(names)), *rows], []
+
+
+def _entries(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
+    """The rows of `{alpha0: 0, a0: 0, d1: 0.75, q1: q1, …}`: what has no value is the joint's variable.
+
+    Raises InputError for a length or a twist without a value, and for a value that is given twice.
+    """
+    found: dict[str, dict[int, str]] = {"alpha": {}, "a": {}, "d": {}, "theta": {}}
+    lines: dict[int, int] = {}
+    matches = [*ENTRY.finditer(bare)]
+    if len(matches) < 2 * MIN_NUMBERS:
+        return [], []
+    for match in matches:
+        column, value = found[{"al": "alpha", "q": "theta", "th": "theta"}.get(match[1], match[1])], match.end()
+        cell = _plain(_parted(bare[value : value + MAX_CALL], ",")[0].split("\n")[0])
+        if column.setdefault(int(match[2]), cell) != cell:
+            raise InputError(f"line {_line(bare, value)}: found {match[1]}{match[2]} twice, expected one value")
+        if column is found["d"]:
+            lines[int(match[2])] = _line(bare, value)
+    before = min(found["alpha"], default=1) == 0
+    line, last = _line(bare, matches[0].start()), max((*found["d"], *found["theta"]), default=0)
+    headings = ("i", "alpha_{i-1}", "a_{i-1}", "d", "theta") if before else ("i", "alpha", "a", "d", "theta")
+    rows = [PastedRow(line, headings)]
+    for i in range(1, last + 1):
+        cells = [found[name].get(i - before, "") for name in ("alpha", "a")] + [found["d"].get(i, "")]
+        if "" in cells:
+            name = ("alpha", "a", "d")[cells.index("")]
+            number = i if name == "d" else i - before
+            raise InputError(f"found no value of {name}{number}, expected alpha, a and d of each of {last} joints")
+        rows.append(PastedRow(lines[i], (str(i), *cells, found["theta"].get(i, f"q{i}"))))
+    return rows, []
+
+
 def _vectors(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
     """The rows of `d = [0.4 0 0]` and its like: each list is a column."""
     columns: dict[str, tuple[str, ...]] = {}
     line = 1
     for match in VECTOR.finditer(bare):
         name = match[1].rpartition(".")[2]
-        if heading_of(name).meaning in ("theta", "d", "a", "alpha", "offset") and ";" not in match[2]:
-            columns[name], line = _cells(match[2]), _line(bare, match.start())
+        if heading_of(name).meaning in ("theta", "d", "a", "alpha", "offset") and ";" not in (match[2] or ""):
+            columns[name], line = _cells(match[2] or match[3]), _line(bare, match.start())
     sizes = {len(cells) for cells in columns.values()}
     if len({heading_of(name).meaning for name in columns} & {*TABLE}) < 3 or len(sizes) != 1:
         return [], []
@@ -169,14 +275,15 @@ def _cells(text: str) -> tuple[str, ...]:
     """The numbers and expressions in a row of a program: between commas, or between blanks."""
     text = _plain(text)
     if "," in text:
-        return (*_parted(text, ","),)
+        return (*(part.strip("'\"") for part in _parted(text, ",")),)
     text = re.sub(r"\s*([*/])\s*", r"\1", re.sub(r"(?<=\S)\s+([-+])\s+(?=\S)", r"\1", text))
-    return tuple(text.split())
+    return tuple(part.strip("'\"") for part in text.split())
 
 
 def _plain(text: str) -> str:
     """An expression of a program without what only its language needs."""
     text = re.sub(r"\((?:float|double)\)|\.\.\.", " ", text)
+    text = re.sub(r"(?<![\w.])[A-Za-z]\w{0,20}\.pi\b", "pi", text)
     text = re.sub(r"(?<=[\d.])[fF]\b", "", text)
     text = re.sub(r"\b(?:[\w.]{1,20}\.)?(?:rad|radians|deg2rad)\(\s*(-?[\d.]{1,20})\s*\)", r"\1°", text)
     return text.strip().strip("'\"")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,6 +28,11 @@ ASSIGNED = re.compile(
 )
 """A name and the number that it is: of `L1 = 0.3 + 0.1` the first number is not its value."""
 
+
+CHAINED = re.compile(r"=([\d.+\-*/ ()]{1,80})=\s*(-?(?:\d+\.?\d*|\.\d+))(?![\w.])")
+"""A number with how it comes about: `0.33 + 0.42 = 0.75`."""
+
+PART_OF_PI = re.compile(r"(?<![\w.])(?:(\d{1,4})\s*\*\s*)?pi(?:\s*/\s*(\d{1,4}))?(?!\s*[\w.*/(])")
 
 PLACED = re.compile(r"\b((?:base|tool): (?:Trans|Rot|RPY|Rx|Ry|Rz)\([\w ,.()*/+-]{0,400}\))")
 HAND = {"m": "0.1", "cm": "10", "mm": "100", "in": "4"}
@@ -70,7 +76,7 @@ def described_table(text: str, wishes: Wishes) -> PastedRobot:
     rows, headings = _headed(rows, wishes.columns)
     headings = _numbered(headings, rows)
     caption = " ".join(line[:MAX_LINE] for line in beside)
-    headings, convention, notes = convention_of(headings, wishes.convention, caption)
+    headings, convention, notes = convention_of(headings, rows, wishes.convention, caption)
     assigned = _assigned(beside)
     values = {**{name: value for name, (value, _) in assigned.items()}, **(wishes.values or {})}
     for name, value in (wishes.values or {}).items():
@@ -207,7 +213,8 @@ def _assigned(lines: list[str]) -> dict[str, tuple[str, str]]:
     """Values that stand beside a table, such as L1 = 300 mm, and their units ("" for none), by their names."""
     found: dict[str, set[tuple[str, str]]] = {}
     for line in lines:
-        line = re.sub(r"(?<=[A-Za-z])_(?=\d)", "", plain_text(line[:MAX_LINE]))
+        line = re.sub(r"(?<=[A-Za-z])_(?=\d)", "", plain_text(line[:MAX_LINE].replace("&=", "=")))
+        line = CHAINED.sub(_chained, line)
         for match in ASSIGNED.finditer(line):
             if re.search(r"(?<!\d)(?<!\d )\b[A-Za-z]\w{0,40}\s?,\s?$", line[: match.start()]):
                 continue  # of `d1, d2 = 0.1, 0.2` the first number is that of d1
@@ -215,6 +222,15 @@ def _assigned(lines: list[str]) -> dict[str, tuple[str, str]]:
     return {
         name: next(iter(values)) for name, values in found.items() if len(values) == 1
     }  # of two values none is taken
+
+
+def _chained(chain: re.Match[str]) -> str:
+    """The number alone, where it is what stands before it."""
+    try:
+        same = math.isclose(evaluate(chain[1].strip(), Scope()).number, float(chain[2]), rel_tol=1e-9)
+    except ExpressionError:
+        same = False
+    return f"= {chain[2]}" if same else chain[0]
 
 
 def _assigned_angle(assigned: dict[str, tuple[str, str]], name: str) -> str:
@@ -277,9 +293,16 @@ def _row_lines(rows: list[JointDraft], angle: str, convention: str) -> list[str]
 
 def _in_unit(text: str, angle: str, line: int) -> str:
     """An expression of angles in the description's unit."""
-    if angle == "deg" and re.search(r"\bpi\b", text):
-        text = re.sub(r"\bpi\b", "180", text)
+    if angle == "deg":
+        text = re.sub(r"\bpi\b", "180", PART_OF_PI.sub(_degrees, text))
     return _bare(text, line)
+
+
+def _degrees(part: re.Match[str]) -> str:
+    """A part of pi in degrees, where they are whole and nothing before it is multiplied or divided by it."""
+    degrees, rest = divmod(180 * int(part[1] or 1), int(part[2] or 1) or 1)
+    apart = part.string[: part.start()].rstrip()[-1:] not in ("*", "/")
+    return str(degrees) if apart and not rest and part[2] != "0" else part[0]
 
 
 def _bare(text: str, line: int) -> str:

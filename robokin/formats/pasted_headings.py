@@ -25,10 +25,12 @@ NAMES = {
                "jointno", "link#", "joint#", "jointnumber", "linknumber", "axisi", "element"),
     "name": ("name", "jointname", "linkname", "joint"),
     "variable": ("q", "qi", "qj", "variable", "jointvariable", "var", "jointvar"),
-    "low": ("min", "qmin", "thetamin", "lower", "lowerlimit", "minimum", "qi,min", "from", "minlimit", "lowerbound"),
-    "high": ("max", "qmax", "thetamax", "upper", "upperlimit", "maximum", "qi,max", "to", "maxlimit", "upperbound"),
+    "low": ("min", "qmin", "thetamin", "lower", "lowerlimit", "minimum", "qi,min", "from", "minlimit", "lowerbound",
+            "q-", "qj-"),
+    "high": ("max", "qmax", "thetamax", "upper", "upperlimit", "maximum", "qi,max", "to", "maxlimit", "upperbound",
+             "q+", "qj+"),
     "limits": ("limits", "limit", "range", "jointlimits", "jointlimit", "jointrange", "motionrange", "rangeofmotion",
-               "qlim", "anglerange", "workingrange", "workrange", "movement", "qrange"),
+               "qlim", "anglerange", "workingrange", "workrange", "movement", "qrange", "travel", "jointtravel"),
 }  # fmt: skip
 """What headings mean, by how they read without blanks, braces, subscripts and units."""
 
@@ -70,10 +72,12 @@ def heading_of(text: str) -> PastedHeading:
         units.append(UNITS[words[2]])
         plain = words[1]
     name = re.sub(r"[\s{}$:*=]+", "", plain).lower().replace("_", "").rstrip("/,;")
+    bracket = r"[(\[]([^()\[\]]*)[)\]]$"
+    if whole := re.fullmatch(r"([a-z#.]{3,})[(\[]([a-z]{1,6}_?\(?[ijkn][-+]1)\)?[)\]]", name):
+        name = whole[2] if whole[1] in MEANINGS else name  # such as Link Length (a_{i-1})
     before = bool(BEFORE.search(name))
     after = bool(AFTER.search(name))
     name = AFTER.sub("", BEFORE.sub("", name))
-    bracket = r"[(\[]([^()\[\]]*)[)\]]$"
     without, within = re.sub(bracket, "", name), re.sub(r"^.*" + bracket, r"\1", name)
     for candidate in (name, without, within, re.sub(r",?(theta|alpha|a|d)(i)?$", "", name) or name):
         if candidate in MEANINGS:

@@ -288,7 +288,7 @@ class TableReader:
 
     def _name(self, row: PastedRow) -> str:
         """The joint's name, where there is more than its number."""
-        name = " ".join(self.text("name", row).split())
+        name = " ".join(self.text("name", row).split()).strip("`*")
         plain = plain_text(name)
         return "" if NUMBERED.fullmatch(plain) or re.fullmatch(r"[\d\W]*|[ivxIVX]+", plain) else name
 
@@ -304,6 +304,7 @@ class TableReader:
         if self.commas:
             text = re.sub(r"(?<=\d),(?=\d)", ".", text)
         bare = UNIT.sub("", text.replace("°", "")).strip()
+        bare = re.sub(r"(^|[\[(,;…~:]|\.\.|\bto)\s*([-+])\s+(?=[\d.])", r"\1 \2", bare).strip()
         if match := re.fullmatch(rf"[\[(]?\s*(?:±|\+/-|\+-|-/\+)\s*({VALUE})\s*[\])]?", bare):
             return f"-{match[1]}", match[1]
         for pattern in PAIRS:

@@ -9,6 +9,7 @@ from itertools import groupby
 from robokin.errors import InputError
 from robokin.formats.pasted_code import code_rows
 from robokin.formats.pasted_headings import TABLE, heading_of
+from robokin.formats.pasted_markup import without_markup
 from robokin.formats.pasted_row import PastedRow
 
 MAX_PASTED = 200_000
@@ -55,9 +56,7 @@ def pasted_rows(text: str, width: int | None = None) -> tuple[list[PastedRow], l
     if len(text) > MAX_PASTED:
         raise InputError(f"found a text of {len(text)} characters, expected a table of a page")
     text = text.replace("\r\n", "\n").replace("\r", "\n").translate(INVISIBLE | BLANKS)
-    if re.search(r"<table|<tr|<html", text, re.IGNORECASE):
-        raise InputError("found a web page's source, expected the table as the browser shows and copies it")
-    text = _uncommented(text)
+    text = _uncommented(without_markup(text))
     if (of_code := code_rows(text)) is not None:
         return _short(of_code[0]), of_code[1]
     rows, gaps = (_latex(text), True) if LATEX_ROW.search(text) else _lines(_unmarked(text), width)
@@ -71,6 +70,8 @@ def pasted_rows(text: str, width: int | None = None) -> tuple[list[PastedRow], l
         lines = " and ".join(str(run[0].line) for run in headed[:3])
         raise InputError(f"found {len(headed)} tables (lines {lines}), expected one")
     table = headed[0] if headed else max(runs, key=len, default=[])
+    if len(table) < 2 and len(folded := _folded(text)) > 1:
+        return _short(folded), []
     if len(table) < 2:
         raise InputError(
             "found no table, expected a line of headings such as `i, theta, d, a, alpha` and a line for each joint "
@@ -79,6 +80,22 @@ def pasted_rows(text: str, width: int | None = None) -> tuple[list[PastedRow], l
     numbers = {row.line for row in table}
     beside = [line for number, line in enumerate(text.split("\n"), start=1) if number not in numbers and line.strip()]
     return _short(table), beside
+
+
+def _folded(text: str) -> list[PastedRow]:
+    """The rows of a table of which each cell is a line, as some PDFs are copied; none where they are not numbered."""
+    lines = [
+        PastedRow(number, (line.strip(),)) for number, line in enumerate(text.split("\n"), start=1) if line.strip()
+    ]
+    meanings = [heading_of(row.cells[0]).meaning if len(row.cells[0]) < MAX_HEADING else "" for row in lines]
+    first = meanings.index("number") if "number" in meanings else len(lines)
+    width = next((k for k, row in enumerate(lines[first:]) if row.cells[0] == "1"), 0)
+    if width < MIN_CELLS or len({*meanings[first : first + width]} & {*TABLE}) < 3 or (len(lines) - first) % width:
+        return []
+    parts = [lines[k : k + width] for k in range(first, len(lines), width)]
+    if any(part[0].cells[0] != str(k) for k, part in enumerate(parts[1:], start=1)):
+        return []
+    return [PastedRow(part[0].line, tuple(row.cells[0] for row in part)) for part in parts]
 
 
 def _short(table: list[PastedRow]) -> list[PastedRow]:

@@ -299,7 +299,7 @@ def test_what_a_table_leaves_open_is_said():
         ("i,theta,d,a,alpha\n1,q1,0,0,2\n", "--angle deg or --angle rad"),
         ("i,theta,d,a,alpha\n1,q1,(3,0,90\n", "found no table|expected"),
         ("i,theta,d,a,alpha\n1,q1,import os,0,90\n", "expected"),
-        ("<table><tr><td>i</td></tr></table>", "web page's source"),
+        ("<table><tr><td>i</td></tr></table>", "no table"),
         ("x" * 200_001, "characters"),
     ],
 )

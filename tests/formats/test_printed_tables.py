@@ -146,6 +146,85 @@ TABLES = {
         "a MATLAB script with links in both forms", "standard", "m",
         "R 0 1 0 90; R 0 1 0 -90; P 0 1 0 90; R 0 0 0 -90; R 0 1 0 0",
     ),
+    "subscripts": Printed(
+        "bharathkukka/6AxisManipulator, README: subscripts in HTML", "modified", "m",
+        "R 0 1 0 0; R 0 0 2 -90; R 0 0 3 0; R 0 0 4 0; R 270 5 6 270; R 270 7 0 270",
+        {"values": {"d1": "1", "a1": "2", "a2": "3", "a3": "4", "d2": "5", "a4": "6", "d3": "7"}},
+    ),
+    "kr210_subscripts": Printed("a report on the KUKA KR210, subscripts in HTML", "modified", "m", KR210),
+    "kr210_dictionary": Printed("a program on the KUKA KR210: a dictionary of sympy", "modified", "m", KR210),
+    "kr210_latex": Printed(
+        "another report on it, LaTeX in a README, the lengths as sums beside; its alpha_1 is of the other sign",
+        "modified", "m", KR210.replace("R -90 0 0.35 -90", "R -90 0 0.35 90"),
+    ),
+    "planar_variable": Printed(
+        "a README: θ1 *(variable)*", "standard", "m", "R 0 0 1 0; R 0 0 2 0", {"values": {"L1": "1", "L2": "2"}},
+    ),
+    "ur10_dhlinks": Printed(
+        "a program with DHLink of the Robotics Toolbox for Python, limits of two joints beside", "standard", "m",
+        "R 0 .1273 0 90; R 0 0 -.612 0; R 0 0 -.5723 0; R 0 .163941 0 90; R 0 .1157 0 -90; R 0 .0922 0 0", None, "ur10",
+    ),
+    "doosan_dhlinks": Printed(
+        "a program with DHLink, limits among the arguments", "standard", "m",
+        "R 0 .135 0 90; R 90 0 .411 0; R 90 0 0 90; R 0 .368 0 -90; R 180 0 0 90; R 0 .121 0 0",
+    ),
+    "rail_links": Printed(
+        "a MATLAB class of a UR3e on a rail: Link([pi 0 0 pi/2 1]) slides", "standard", "m",
+        "P 180 0 0 90; R 0 .15185 0 90; R 0 0 -.24355 0; R 0 0 -.2132 0; R 0 .13105 0 90; R 0 .08535 0 -90; "
+        "R 0 .0921 0 0",
+    ),
+    "rrp_links": Printed(
+        "a MATLAB script, its calls over several lines: Link('theta', 0, …) slides", "modified", "m",
+        "R 0 0 0 0; R 0 0 1 0; P 0 0 2 0", {"values": {"l1": "1", "l2": "2"}},
+    ),
+    "needle_matrix": Printed(
+        "a program of sympy: a needle that turns and slides", "standard", "m",
+        "P 0 0 0 0; R 0 0 0 180; P 90 0 5 90; R 0 0 2 0",
+        {"columns": ("theta", "d", "a", "alpha"), "values": {"l2": "3", "l3": "4", "l4": "2"}},
+    ),
+    "indexed_matrix": Printed(
+        "a program of sympy: q[0] is the first", "standard", "m",
+        "R 0 1 2 90; R 90 0 3 0; R -90 0 0 -90; R 0 4 0 90; R 0 0 0 -90; R 0 5 0 0",
+        {"columns": ("alpha", "a", "d", "theta"),
+         "values": {"d1": "1", "a1": "2", "a2": "3", "d4": "4", "d6": "5"}},
+    ),
+    "radians_matrix": Printed(
+        "a program on the iiwa, its third joint held: math.radians(-90), symbols[0]", "standard", "mm",
+        "R 0 360 0 -90; R 0 0 0 90; F 0 420 0 90; R 0 0 0 -90; R 0 399.5 0 -90; R 0 0 0 90; R 0 205.5 0 0",
+        {"columns": ("alpha", "a", "d", "theta")},
+    ),
+    "scara_cells": Printed(
+        "a MATLAB function with a cell array, names in quotes", "standard", "m",
+        "R 0 1 0 0; R 0 0 2 0; P 0 0 3 0; R 0 0 0 0", {"values": {"l0": "1", "l1": "2", "l2": "3"}},
+    ),
+    "data_frame": Printed(
+        "a program of pandas: a list for each column in a dictionary", "standard", "m",
+        "R 0 1 0 90; R 0 0 2 0; R 0 0 3 0",
+        {"values": {"d1": "1", "a2": "2", "a3": "3"}},
+    ),
+    "puma_docstring": Printed(
+        "the docstring of a program on the PUMA 560: travel in degrees, twists in parts of π", "standard", "m",
+        "R 0 0 0 90; R 0 0 .4318 0; R 0 .15005 .0203 -90; R 0 .4318 0 90; R 0 0 0 -90; R 0 0 0 0",
+    ),
+    "pincher_matrix": Printed(
+        "a MATLAB function of the PhantomX Pincher: jA(1)", "standard", "m",
+        "R 0 .04495 0 90; R 0 0 .1035 0; R 0 0 .10375 0; R 0 0 .111 0", {"columns": ("a", "alpha", "d", "theta")},
+    ),
+    "boat_rotor": Printed(
+        "a README with names as code, its last row the tool's", "standard", "m", "R 0 0 0 0; R 0 0 0 0; F 0 .01 0 0",
+    ),
+    "ur5_records": Printed(
+        "a program on the UR5: DHParam(d=…, alpha=…), two of its joints", "standard", "m",
+        "R 0 .089159 0 90; R 0 0 -.425 0",
+    ),
+    "humanoid_leg": Printed(
+        "a README of a humanoid: units in some cells", "standard", "m",
+        "R 0 0 0 90; R 0 0 0 90; R 0 0 0 -90; R 0 .35 0 0; R 0 .32 0 90; R 0 0 .08 0",
+    ),
+    "toolbox_print": Printed(
+        "print(robot) of the Robotics Toolbox for Python, three joints of its PUMA 560", "standard", "m",
+        "R 0 .6718 0 90; R 0 0 .4318 0; R 0 .15 .0203 -90",
+    ),
 }  # fmt: skip
 
 
@@ -221,6 +300,16 @@ FIRST = HEADS + "1\tθ1\t0\t0.1\t90°\n"
         ("a = RevoluteDH(d=1)\nb = RevoluteMDH(d=1)\n", "found links in the modified convention and others"),
         ("a = RevoluteDH(d=1)\nb = RevoluteDH(d=1, flip=True)\n", "line 2: found a link with flip"),
         ("d = [1, 2];\n", "found no table"),
+        ("i\tθ\td_{i-1}\ta\tα\n1\tθ1\t0\t1\t90°\n2\tθ2\t0\t1\t0\n", "found d or theta of i - 1 in the headings"),
+        ("L1 = Link('theta', 1, 'd', 2, 'a', 0)\nL2 = Link('d', 1)\n", "line 1: found a link with theta and d"),
+        ("a = DHLink(d=1, theta=pi/2)\nb = DHLink(d=1)\n", "line 1: found theta pi/2 of a link that turns"),
+        ("s = {alpha0: 0, a0: 1, d1: 1, alpha1: 0, a1: 1, alpha2: 0, a2: 1, d3: 1}", "found no value of d2"),
+        ("s = {alpha0: 0, a0: 1, d1: 1, d1: 2, alpha1: 0, a1: 1, d2: 1, q2: q2}", "line 1: found d1 twice"),
+        (
+            "[{'d': 1, 'a': 0, 'alpha': 0}, {'d': 1, 'a': 0, 'alpha': 0, 'theta': 0}]",
+            "line 1: found d, a, alpha, theta",
+        ),
+        ("<tr><td>θ<td>d<td>a<td>α</tr>\n<tr><td colspan=2>1<td>2<td>90</tr>", "line 2: found a cell over several"),
         (HEADS + "1\tθ1\t0\t" + "1" * 5000 + "\t90°\n", "line 2: found a cell of 5000 characters"),
     ],
 )
@@ -283,6 +372,48 @@ def test_limits_of_a_program():
     assert np.degrees(read_text(made.text).limits).tolist() == pytest.approx(np.array([[-170, 170], [-180, 90]]))
     with pytest.raises(InputError, match="found the limits"):
         of_table(text.replace("pi/180", "2"), Wishes())
+
+
+def test_limits_of_a_program_in_degrees_are_degrees():
+    """However small: deg2rad([-3 3]) is no ±3 rad."""
+    text = "a = Link('d', 1, 'qlim', deg2rad([-3 3]))\nb = Link('d', 1, 'alpha', pi/2)\nb.qlim = np.radians([-2, 1])\n"
+    assert np.degrees(read_text(of_table(text, Wishes()).text).limits) == pytest.approx(np.array([[-3, 3], [-2, 1]]))
+
+
+def test_nothing_of_a_call_is_lost_where_its_line_ends():
+    made = of_table(
+        "L(1) = Link('d', 1, ...\n 'alpha', pi/2, ...  % the twist\n 'a', 2);\nL(2) = Link('d', 0)\n", Wishes()
+    )
+    row = read_text(made.text).rows[0]
+    assert (row.alpha, row.a) == (math.pi / 2, 2.0)
+
+
+HTML = """<table><thead>
+<tr><th>Joint</th><th>&theta;<sub>i</sub></th><th>d<sub>i</sub> (mm)</th><th>a (mm)</th><th>&alpha;</th></tr></thead>
+<tr>
+ <td>1</td><td>&theta;<sub>1</sub> &minus; 90&deg;</td><td>290</td><td>0</td><td>-90<sup>o</sup></td></tr>
+<tr><td>2</td><td>&theta;<sub>2</sub></td><td>0</td><td>270</td><td>0</td></tr></table>"""
+WIKI = (
+    "{| class='w'\n! i !! θ !! d !! a !! α\n|-\n| 1 || θ1 - 90° || 290 || 0 || -90°\n|-\n| 2 || θ2 || 0 || 270 || 0\n|}"
+)
+ASCII_DOC = "|===\n|i |θ~i~ |d~i~ |a~i~ |α~i~\n|1 |θ~1~ - 90° |290 |0 |-90°\n|2 |θ~2~ |0 |270 |0\n|==="
+OF_PDF = "i\nθi\ndi\nai\nαi\n1\nθ∗1 − 90°\n290\n0\n−90°\n2\nθ∗2\n0\n270\n0\n"
+GRID = "+---+-----+\n| i | θ | d | a | α |\n+===+\n| 1 | θ1 - 90° | 290 | 0 | -90° |\n+---+\n| 2 | θ2 | 0 | 270 | 0 |\n+---+"
+
+
+@pytest.mark.parametrize("text", [HTML, WIKI, ASCII_DOC, OF_PDF, GRID])
+def test_a_table_is_the_same_in_each_markup(text):
+    made = of_table(text, Wishes())
+    rows = [(row.offset, row.d, row.a, row.alpha) for row in read_text(made.text).rows]
+    assert np.allclose(rows, [(-math.pi / 2, 0.29, 0, -math.pi / 2), (0, 0, 0.27, 0)])
+    with pytest.raises(InputError, match="line"):
+        of_table(text.replace("290", "2.9.0"), Wishes())
+
+
+def test_cells_on_lines_of_their_own_are_a_table_only_where_rows_are_numbered():
+    for wrong in (OF_PDF.replace("\n2\n", "\n3\n"), OF_PDF + "1\n", OF_PDF.replace("290\n", "")):
+        with pytest.raises(InputError, match="found no table"):
+            of_table(wrong, Wishes())
 
 
 def test_a_matrix_may_break_its_rows_where_it_likes():
