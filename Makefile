@@ -34,8 +34,10 @@ $(VENV)/release: $(VENV)/dev .ci/requirements/release.txt
 	$(BIN)/$(LOCKED) -r .ci/requirements/release.txt
 	@touch $@
 
-demo: $(VENV)/user ## install, and the pose of the PUMA 560
-	$(BIN)/robokin fk puma560 --q home
+demo:            ## the pose of the PUMA 560, which needs nothing but Python; then install
+	$(PYTHON) -m robokin fk puma560 --q home
+	@$(MAKE) --no-print-directory $(VENV)/user
+	@echo "installed: $(BIN)/robokin --help"
 
 test: $(VENV)/dev ## the tests, without the slow laws: some ten minutes on two cores
 	$(BIN)/$(PYTEST) -m 'not slow'

@@ -140,6 +140,27 @@ def test_a_start_warns_of_nothing_and_loads_only_what_it_needs(arguments):
     assert (done.returncode, done.stderr) == (0, "[]\n")
 
 
+def bare(*arguments):
+    """A command line by a Python without any package, in the checkout."""
+    command = [sys.executable, "-I", "-S", "-c", f"import sys; sys.path.insert(0, {str(ROOT)!r}); "]
+    command[-1] += "from robokin.cli import run; sys.exit(run(sys.argv[1:]))"
+    return subprocess.run([*command, *arguments], capture_output=True, text=True)
+
+
+def test_the_first_answer_needs_nothing_installed():
+    done = bare("fk", "puma560", "--q", "home")
+    assert (done.returncode, done.stderr) == (0, "") and "-149.09" in done.stdout
+    assert bare("list").returncode == 0
+
+
+def test_what_needs_more_says_what_and_how():
+    done = bare("ik", "puma560", "--pose", "Trans(300, 400, 500)")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == (
+        "robokin: this needs typer, which is not installed; `pip install .` in the checkout installs all it needs\n"
+    )
+
+
 # The audit's words and status, for what pip-audit writes ----------------------------------------------
 
 CLEAN = {"name": "numpy", "version": "2.4.6", "vulns": []}

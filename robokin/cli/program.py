@@ -7,6 +7,9 @@ import sys
 
 from robokin.cli.statuses import DONE, INTERRUPTED, WRONG_INPUT, abandon, say
 
+NEEDED = ("typer", "numpy", "yaml", "rich")
+"""What an installation brings; a checkout without it answers plain questions alone (`python -m robokin fk puma560 …`)."""
+
 
 def main() -> None:
     """Run the command line on the process's arguments and exit with its status."""
@@ -49,6 +52,11 @@ def run(arguments: list[str]) -> int:
     except RobokinError as error:
         # All mistakes of a description are said at once, each with its line.
         say(str(error), lines=isinstance(error, DescriptionError))
+        return WRONG_INPUT
+    except ModuleNotFoundError as error:
+        if error.name not in NEEDED:
+            raise
+        say(f"this needs {error.name}, which is not installed; `pip install .` in the checkout installs all it needs")
         return WRONG_INPUT
     except BrokenPipeError:
         # Whoever reads has what it wants (`| head`): a quiet end, and nothing more to be flushed.
