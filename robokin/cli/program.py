@@ -8,7 +8,7 @@ import sys
 from robokin.cli.statuses import DONE, INTERRUPTED, WRONG_INPUT, abandon, say
 
 NEEDED = ("typer", "numpy", "yaml", "rich")
-"""What an installation brings; a checkout without it answers plain questions alone (`python -m robokin fk puma560 …`)."""
+"""What an installation brings; a checkout without it answers plain questions alone: `python -m robokin list`."""
 
 
 def main() -> None:

@@ -15,9 +15,19 @@ from robokin.arrays import Array
 from robokin.pictures.mechanism_scene import PLAYED, MechanismScene
 from robokin.pictures.mechanism_shape import PATHS, StraightPiece, link_colours
 from robokin.pictures.workspace_page import filled
+from robokin.spatial.rotations import quaternion_from_rotation
 
-DIGITS = 6
+DIGITS = 5
 """Significant digits of what is only drawn: far finer than a screen."""
+
+TURN = 1e-6
+"""What a whole number of a quaternion counts: poses are whole numbers, half as many letters as matrices."""
+
+SHIFT = 2e-6
+"""What a whole number of a displacement counts, as a part of the mechanism's size."""
+
+WAY = 1e-4
+"""The same of the ways of points, which are only drawn."""
 
 MOST = 360
 """Configurations that a page holds: more are thinned out."""
@@ -28,6 +38,7 @@ def mechanism_page(scene: MechanismScene) -> bytes:
     mechanism, units, trace = scene.mechanism, scene.units, scene.trace
     scale = 1.0 / units.metres
     low, high = scene.bounds()
+    size = scene.shape.size * scale
     colours = link_colours(mechanism)
     moving = [link for link in mechanism.links if link != mechanism.ground]
     picked = np.zeros(0, dtype=int)
@@ -47,9 +58,10 @@ def mechanism_page(scene: MechanismScene) -> bytes:
         "pieces": [_piece(piece, scale) for piece in scene.shape.pieces],
         "plates": [[plate.body, plate.colour, _short(plate.corners * scale)] for plate in scene.shape.plates],
         "names": [[name, body, _short(place * scale)] for name, body, place in scene.shape.names],
-        "ways": [_short(way[picked] * scale) for way in scene.ways()],
+        "grain": [TURN, SHIFT * size, WAY * size],
+        "ways": [_counted(way[picked] * scale, WAY * size).reshape(-1).tolist() for way in scene.ways()],
         "paths": [_short(scene.paths[picked, i] * scale) for i in range(scene.paths.shape[1])],
-        "size": scene.shape.size * scale,
+        "size": size,
         "box": _short(np.array([low, high]) * scale),
         "view": list(scene.view),
         "note": scene.note,
@@ -61,11 +73,12 @@ def mechanism_page(scene: MechanismScene) -> bytes:
     }
     if trace is not None:
         numbers = [mechanism.links.index(link) for link in moving]
-        poses = trace.poses[picked][:, numbers, :3].copy()
-        poses[..., 3] *= scale
+        poses = trace.poses[picked][:, numbers]
+        turns = _counted(quaternion_from_rotation(poses[..., :3, :3]), TURN)
+        shifts = _counted(poses[..., :3, 3] * scale, SHIFT * size)
         factors = np.where(trace.turning, units.radians, units.metres)
         data |= {
-            "poses": _short(poses.reshape(len(picked), len(moving), 12)),
+            "poses": np.concatenate([turns, shifts], axis=-1).reshape(len(picked), -1).tolist(),
             "labels": list(trace.labels),
             "turning": trace.turning.tolist(),
             "values": _short(trace.values[picked] / factors),
@@ -76,6 +89,11 @@ def mechanism_page(scene: MechanismScene) -> bytes:
 def _piece(piece: StraightPiece, scale: float) -> list[Any]:
     ends = [_short(piece.a * scale), _short(piece.b * scale), _short(piece.across)]
     return [piece.colour, *piece.bodies, *ends, *_short(np.array(piece.widths) * scale), piece.sides]
+
+
+def _counted(values: Array, grain: float) -> Array:
+    """Numbers as whole numbers of grains."""
+    return np.round(values / grain).astype(np.int64)
 
 
 def _short(values: Array) -> Any:

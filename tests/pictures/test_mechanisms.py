@@ -105,10 +105,17 @@ def test_the_page_holds_the_motion():
     moved = trace(mechanism, 500)
     data = page_data(mechanism_page(mechanism_scene(mechanism, moved, None, mechanism.units)))
     assert len(data["poses"]) == 360
-    assert data["poses"][0] == [[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]] * 5
+    assert data["poses"][0] == [10**6, 0, 0, 0, 0, 0, 0] * 5
     assert data["labels"] == list(moved.labels)
     assert data["closed"] == moved.closed
     assert np.allclose(np.array(data["values"][-1]), np.degrees(moved.values[-1]), rtol=1e-4, atol=1e-4)
+
+
+@pytest.mark.parametrize("name", sweep(["delta-with-bars", "orthoglide", "6-sps", "dixon-second", "miura-ori"], 4))
+def test_a_page_of_many_links_stays_small(name):
+    mechanism = robokin.load_mechanism(name)
+    moved, note = motion_to_draw(mechanism)
+    assert len(picture_of(mechanism, moved, None, mechanism.units, ".html", note=note)) < 400_000
 
 
 @needs_browser
