@@ -35,10 +35,11 @@ def sheet_files(sheet: Sheet, name: str) -> Iterator[tuple[str, bytes]]:
         text = sheet_text(name, student, questions)
         yield f"{place}/questions.md", markdown(text)
         yield f"{place}/questions.tex", latex(text)
-        yield f"{place}/{ANSWERS}", csv_records(COLUMNS, form_rows(folders[student], questions, filled=False))
+        filled = form_rows(folders[student], questions)
+        yield f"{place}/{ANSWERS}", csv_records(COLUMNS, [[*row[:-1], ""] for row in filled])
         for about, sketch in sketches.items():
             yield f"{place}/{about}.svg", sketch
-        right += form_rows(folders[student], questions, filled=True)
+        right += filled
     yield f"{KEY}/{ANSWERS}", csv_records(COLUMNS, right)
     yield from key_files(sheet, name, folders)
 
@@ -63,14 +64,10 @@ def sheet_name(folder: Path) -> str:
     return folder.resolve().name or "sheet"
 
 
-def form_rows(name: str, questions: list[StudentQuestion], *, filled: bool) -> list[list[Any]]:
-    """The lines of a student's form, with the right answers or without."""
-    rows = []
-    for one in questions:
-        quantities = one.exercise.quantities(one.given)
-        answers = one.exercise.answers(one.given) if filled else [""] * len(quantities)
-        rows += [
-            [name, one.id, quantity.name, quantity.unit, answer]
-            for quantity, answer in zip(quantities, answers, strict=True)
-        ]
-    return rows
+def form_rows(name: str, questions: list[StudentQuestion]) -> list[list[Any]]:
+    """The lines of a student's form with the right answers, which are the last column."""
+    return [
+        [name, one.id, quantity.name, quantity.unit, answer]
+        for one in questions
+        for quantity, answer in zip(one.exercise.quantities(one.given), one.exercise.answers(one.given), strict=True)
+    ]

@@ -52,6 +52,15 @@ class SheetAnswers:
         for name, student in self.known.items():
             folded.setdefault(name.casefold(), set()).add(student)
         self.folded = {name: own.pop() for name, own in folded.items() if len(own) == 1}
+        self.asked: dict[tuple[str, str], dict[str, None]] = {}
+
+    def quantities(self, student: str, id: str) -> dict[str, None]:
+        """The names of what a question asks of a student, in their order; worked out once, and asked for every line."""
+        own = self.asked.get((student, id))
+        if own is None:
+            asked = self.key.exercises[id].quantities(self.key.numbers[student, id])
+            own = self.asked[student, id] = dict.fromkeys(one.name for one in asked)
+        return own
 
     def student(self, name: str) -> str | None:
         """The student who is called so, or None."""
@@ -81,7 +90,7 @@ class SheetAnswers:
     def _line(self, who: str, row: Row) -> str:
         """Take a line; why it is not marked, or ""."""
         id, name = row.cells["id"], " ".join(row.cells["quantity"].split())
-        if name not in {one.name for one in self.key.exercises[id].quantities(self.key.numbers[who, id])}:
+        if name not in self.quantities(who, id):
             return f"question {id} asks for no '{shown(name)}'"
         own = self.cells.setdefault((who, id), {})
         before, answer = own.get(name), row.cells["answer"]
@@ -107,7 +116,7 @@ class SheetAnswers:
         if found:
             first = min((one for one, _ in found.values()), key=lambda one: one.line)
             fault = next((one.fault for one, _ in found.values() if one.fault), "")
-            cells = {one.name: found[one.name][1] if one.name in found else "" for one in exercise.quantities(given)}
+            cells = {name: found[name][1] if name in found else "" for name in self.quantities(student, id)}
             row = replace(first, cells=cells, fault=fault)
         task = exercise.task(given, row, student)
         return SheetTask(task.id, task.question, task.answers, student, task.line, marker=exercise.subject(given))

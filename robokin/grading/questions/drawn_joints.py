@@ -80,10 +80,9 @@ def _values(low: float, high: float, turns: bool, angle: str) -> tuple[float, ..
 
 def clear_of_limits(robot: Robot, q: Array) -> Flags:
     """(m,) whether solutions q: (m, n) [rad | m] are well inside or well outside the limits, angles by any turns."""
-    clear = np.ones(len(q), dtype=bool)
-    for i, (turns, (low, high)) in enumerate(zip(robot.revolute, robot.limits, strict=True)):
-        inside = margin(bool(turns), high - low)
-        for bound in (low, high):
-            if np.isfinite(bound):
-                clear &= np.abs(whole_turn(q[:, i] - bound, np.asarray(turns))) > inside
-    return clear
+    widths = (robot.limits[:, 1] - robot.limits[:, 0]).tolist()
+    inside = np.array([margin(*joint) for joint in zip(robot.revolute.tolist(), widths, strict=True)])
+    finite = np.isfinite(robot.limits)
+    bounds = np.where(finite, robot.limits, 0.0)
+    off = np.abs(whole_turn(q[:, :, None] - bounds, robot.revolute[:, None]))
+    return np.asarray(np.all((off > inside[:, None]) | ~finite, axis=(1, 2)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -26,7 +26,7 @@ class JacobianExercise(PoseExercise):
 
     kind: ClassVar[str] = "jacobian"
 
-    @property
+    @cached_property
     def rows(self) -> list[int]:
         """Which of the six rows are asked for."""
         return [0, 1, 5] if flat_arm(self.robot) is not None else list(range(6))
@@ -37,6 +37,11 @@ class JacobianExercise(PoseExercise):
 
     def quantities(self, given: Given) -> tuple[AskedQuantity, ...]:
         """The entries, row by row."""
+        return self.entries
+
+    @cached_property
+    def entries(self) -> tuple[AskedQuantity, ...]:
+        """The same for all students."""
         return tuple(
             AskedQuantity(f"{ROWS[i]} q{k + 1}", self.robot.units.length if self._linear(i, k) else "")
             for i in self.rows for k in range(self.robot.n)

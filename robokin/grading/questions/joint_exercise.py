@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
@@ -13,14 +13,16 @@ from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.grading.answers.answer_tasks import JointReader
 from robokin.grading.answers.answered_poses import AnsweredPose, pose_from
-from robokin.grading.configuration_marks import reached, solutions_near, solutions_near_each
+from robokin.grading.configuration_marks import joints_outside, solutions_near, solutions_near_each
 from robokin.grading.joint_marks import JointCheck, task_of
 from robokin.grading.marking import GivenAnswer
+from robokin.grading.pose_difference import PASS, pose_errors, pose_status
 from robokin.grading.questions.drawn_joints import clear_of_limits
 from robokin.grading.questions.exercise import AskedQuantity, Given, RobotExercise
 from robokin.grading.questions.pose_forms import REGULAR, PoseForm, given_values, regularity, target_form
 from robokin.grading.questions.seeded_numbers import SeededNumbers
 from robokin.grading.questions.typed_numbers import angle_text, decimal_text, decimals_for, whole_turn
+from robokin.grading.tolerance import Tolerance
 from robokin.inverse.solutions import Result
 from robokin.inverse.solve import solve_many
 from robokin.kinematics.forward import forward_kinematics
@@ -86,13 +88,15 @@ class JointExercise(RobotExercise):
             return []
         q = np.array([self.si(given["made_of"]) for given in candidates])
         regular = regularity(self.robot, q, self.form.rows) > REGULAR
-        good = [bool(one) and self._reached(given, own) for one, given, own in zip(regular, candidates, q, strict=True)]
+        poses = forward_kinematics(self.robot, q)
+        targets = {i: self.question(candidates[i]) for i in np.flatnonzero(regular).tolist()}
+        good = [i in targets and self._reached(targets[i], q[i], poses[i]) for i in range(len(candidates))]
         if not self.redundant:
             chosen = [i for i, one in enumerate(good) if one]
-            results = dict(zip(chosen, self._all([candidates[i] for i in chosen]), strict=True))
+            results = dict(zip(chosen, self._all([targets[i] for i in chosen], poses[chosen]), strict=True))
             for i, result in results.items():
                 good[i] = self.clear(result, q[i])
-            self._keep([given for given, one in zip(candidates, good, strict=True) if one])
+            self._keep({i: candidates[i] for i in chosen if good[i]}, targets)
             for i, result in results.items() if self.scarce else ():
                 if good[i]:
                     within = self.robot.within_limits(np.array([solution.q for solution in result.solutions]))
@@ -104,30 +108,30 @@ class JointExercise(RobotExercise):
         """The solutions within the limits of targets that were drawn."""
         return {}
 
-    def _keep(self, chosen: Sequence[Given]) -> None:
+    def _keep(self, chosen: Mapping[int, Given], targets: Mapping[int, AnsweredPose]) -> None:
         """Note the solutions of some targets, found together: one by one they take ten times as long."""
         if not chosen:
             return
-        targets = [self.question(given) for given in chosen]
-        poses = np.array([one.T for one in targets])
-        found = solutions_near_each(self.robot, poses, self.allowed, task_of(targets[0]))
-        for given, result in zip(chosen, found, strict=True):
+        poses = np.array([targets[i].T for i in chosen])
+        found = solutions_near_each(self.robot, poses, self.allowed, task_of(next(iter(targets.values()))))
+        for given, result in zip(chosen.values(), found, strict=True):
             self.known[tuple(given_values(self.form, given))] = [solution.q for solution in result.solutions]
 
-    def _reached(self, given: Given, q: Array) -> bool:
-        target, tight = self.question(given), replace(
-            self.allowed, position=SLACK * self.allowed.position, angle=SLACK * self.allowed.angle
-        )  # fmt: skip
-        return reached(self.robot, q, target.T, tight, task_of(target)).right
+    def _reached(self, target: AnsweredPose, q: Array, T: Array) -> bool:
+        """Whether joint values, drawn within the limits, whose pose is T (4, 4) [m] are well within the tolerance."""
+        errors = pose_errors(target.T, T, task_of(target))
+        return pose_status(*errors, self.tight, target.T) == PASS and not joints_outside(self.robot, q)
 
-    def _all(self, candidates: Sequence[Given]) -> Sequence[Result]:
-        """All solutions of targets, whatever the limits."""
-        if not candidates:
+    @cached_property
+    def tight(self) -> Tolerance:
+        """How far a rounded target may be from what it was made of."""
+        return replace(self.allowed, position=SLACK * self.allowed.position, angle=SLACK * self.allowed.angle)
+
+    def _all(self, targets: Sequence[AnsweredPose], made_of: Array) -> Sequence[Result]:
+        """All solutions of targets, whatever the limits; made_of: (m, 4, 4) [m], the poses before rounding."""
+        if not targets:
             return []
-        targets = [self.question(given) for given in candidates]
-        poses = np.array([one.T for one in targets])
-        if self.scarce:
-            poses = forward_kinematics(self.robot, np.array([self.si(given["made_of"]) for given in candidates]))
+        poses = made_of if self.scarce else np.array([one.T for one in targets])
         batch = solve_many(self.robot, poses, limits=False, task=task_of(targets[0]))
         return [batch[i] for i in range(len(targets))]
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from decimal import ROUND_HALF_UP, Decimal
+from functools import cache
 
 import numpy as np
 
@@ -24,10 +25,15 @@ def decimals_for(part: float) -> int:
     return max(0, math.ceil(-math.log10(part) - 1e-9)) if part > 0.0 else 9
 
 
+@cache
+def _last_digit(decimals: int) -> Decimal:
+    return Decimal(1).scaleb(-decimals)
+
+
 def decimal_text(value: float, decimals: int) -> str:
     """A number with at most so many decimals, without zeros behind and never -0."""
     steady = Decimal(repr(round(float(value), decimals + SPARE)))
-    text = format(steady.quantize(Decimal(1).scaleb(-decimals), ROUND_HALF_UP), "f")
+    text = format(steady.quantize(_last_digit(decimals), ROUND_HALF_UP), "f")
     if "." in text:
         text = text.rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
