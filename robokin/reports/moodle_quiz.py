@@ -22,7 +22,7 @@ from robokin.grading.questions.table_exercise import TableExercise
 from robokin.model import Robot
 from robokin.records.description_records import robot_record
 from robokin.reports.question_markup import Block, TableBlock, TextBlock
-from robokin.reports.question_texts import question_text, robots_of, sketch_of
+from robokin.reports.question_texts import each_joint_off, question_text, robots_of, sketch_of, target_text
 from robokin.reports.table_files import html_table, printable
 
 CLEAR = np.radians(1.0)
@@ -30,6 +30,13 @@ CLEAR = np.radians(1.0)
 
 EQUAL = 1e-6
 """Joint values [rad | m] that differ by less are the same."""
+
+
+FIRST = (
+    "Of all solutions within the limits, with angles between minus and plus half a turn, give the one with the "
+    "smallest q1; where several have that q1, the one of these with the smallest q2, and so on."
+)
+ONLY = "Give joint values within the limits; there is one solution."
 
 
 def moodle_quiz(sheet: Sheet, name: str) -> tuple[bytes, list[str]]:
@@ -86,12 +93,7 @@ def cloze_gaps(question: StudentQuestion) -> str | None:
         if first is None:
             return None
         answers = exercise.texts(first)
-        if len(solutions) > 1:
-            said = (
-                "<p>Of all solutions within the limits, with angles between minus and plus half a turn, give the one "
-                "with the smallest q1; where several have that q1, the one of these with the smallest q2, and so "
-                "on.</p>"
-            )
+        said = f"<p>{FIRST if len(solutions) > 1 else ONLY} {escape(each_joint_off(exercise))}</p>"
     gaps = []
     for quantity, answer in zip(exercise.quantities(given), answers, strict=True):
         far, turn = _allowed(exercise, quantity.unit)
@@ -142,7 +144,10 @@ def _html(question: StudentQuestion) -> str:
         parts.append(f"<p>{escape(printable(robot.robot.name))}</p>{html_table(record)}")
         picture = f'<img src="@@PLUGINFILE@@/{escape(robot.about)}.svg" alt="sketch of {escape(robot.about)}"/>'
         parts.append(f"<p>{picture}<br/>{escape(sketch.about)}</p>")
-    return "".join([*parts, *map(_html_block, question_text(question.exercise, question.given))]).replace("{", "&#123;")
+    exercise, given = question.exercise, question.given
+    # Moodle compares number by number: what is asked of joint values stands before their gaps.
+    text = target_text(exercise, given) if isinstance(exercise, JointExercise) else question_text(exercise, given)
+    return "".join([*parts, *map(_html_block, text)]).replace("{", "&#123;")
 
 
 def _picture(name: str, robot: Robot) -> str:

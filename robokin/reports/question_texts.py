@@ -103,7 +103,7 @@ def question_text(exercise: Exercise, given: Given) -> list[Block]:
             TextBlock(
                 f"Rows {', '.join(dict.fromkeys(one.name.split()[0] for one in exercise.quantities(given)))}, linear "
                 "before angular; a column for each joint, of a revolute one for a radian. A length may be off by "
-                f"{_allowed(exercise)[0]}, a number without a unit by {decimal_text(exercise.allowed.angle, 4)}."
+                f"{allowed_texts(exercise)[0]}, a number without a unit by {decimal_text(exercise.allowed.angle, 4)}."
             ),
         ]  # fmt: skip
     return [
@@ -124,7 +124,7 @@ def _form_in_words(form: PoseForm) -> str:
     return f"{names}, where phi is the angle of the end effector's x axis" if "phi" in form.names else names
 
 
-def _allowed(exercise: RobotExercise) -> tuple[str, str]:
+def allowed_texts(exercise: RobotExercise) -> tuple[str, str]:
     """How far a length may be off, and an angle."""
     units, allowed = exercise.robot.units, exercise.allowed
     length, angle = allowed.position / units.metres, allowed.angle / units.radians
@@ -133,7 +133,7 @@ def _allowed(exercise: RobotExercise) -> tuple[str, str]:
 
 def _off(exercise: PoseExercise | JointExercise, between: str) -> str:
     """How far a pose may be off; of a position no angle is said."""
-    length, angle = _allowed(exercise)
+    length, angle = allowed_texts(exercise)
     return f"{length}{between} {angle}" if exercise.form.turns else length
 
 
@@ -147,19 +147,31 @@ def _precision(exercise: JointExercise, given: Given) -> str:
     return f"The {where} they lead to may be off by {_off(exercise, ' and')}: {' and '.join(said)} are enough."
 
 
-def _joint_text(exercise: JointExercise, given: Given) -> list[Block]:
+def target_text(exercise: JointExercise, given: Given) -> list[Block]:
+    """Where the end effector is to be, without what is asked for."""
     form, units = exercise.form, exercise.robot.units
     headings = [f"{name} [{unit}]" if (unit := form.unit(name, units)) else name for name in form.names]
-    asked = "Give joint values within the limits; any solution will do."
-    if isinstance(exercise, SolutionsExercise):
-        count = given["count"]
-        asked = f"Give all solutions within the limits, in any order: there {'is 1' if count == 1 else f'are {count}'}."
     turns = f" ({TURNS})" if form.kind == "rpy" else ""
     return [
         TextBlock(f"The end effector of {exercise.about} is to be at{turns}"),
         TableBlock(headings, [[show(given[name]) for name in form.names]]),
-        TextBlock(f"{asked} {_precision(exercise, given)}"),
     ]
+
+
+def each_joint_off(exercise: JointExercise) -> str:
+    """How far each joint value may be off where they are compared one by one."""
+    (length, angle), turning = allowed_texts(exercise), exercise.robot.revolute
+    said = [f"each angle may be off by {angle}"] if turning.any() else []
+    said += [f"each length {'by' if said else 'may be off by'} {length}"] if not turning.all() else []
+    return ", ".join(said).capitalize() + "."
+
+
+def _joint_text(exercise: JointExercise, given: Given) -> list[Block]:
+    asked = "Give joint values within the limits; any solution will do."
+    if isinstance(exercise, SolutionsExercise):
+        count = given["count"]
+        asked = f"Give all solutions within the limits, in any order: there {'is 1' if count == 1 else f'are {count}'}."
+    return [*target_text(exercise, given), TextBlock(f"{asked} {_precision(exercise, given)}")]
 
 
 def _table_text(exercise: TableExercise, given: Given) -> list[Block]:

@@ -443,6 +443,11 @@ def test_a_moodle_quiz_is_xml_whose_gaps_hold_the_key(call, tmp_path, class_):
     names = [one.findtext("name/text") for one in root.findall("question[@type='cloze']")]
     assert "w 1 <b>&amp; ]]>" in names
     assert root.find(".//file").get("name") == "puma560.svg"
+    # One solution is meant, and joint values are compared one by one: the text says nothing else.
+    texts = [one for one in root.itertext() if "is to be at" in one]
+    assert texts
+    assert all("each angle may be off by 0.1 deg" in one.casefold() for one in texts)
+    assert not any("any solution" in one or "lead to" in one for one in texts)
     key = read_sheet_key(str(place / "key"))
     for one in root.findall("question[@type='cloze']"):
         _, id, student = one.findtext("name/text").split(" ", 2)
