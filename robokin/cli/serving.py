@@ -6,15 +6,18 @@ import io
 import json
 import os
 import sys
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from robokin.cli.statuses import WRONG_INPUT
 from robokin.errors import InputError, RobokinError, shown, visible
 from robokin.formats.library import library_file
-from robokin.formats.plain_robots import PlainRobot, library_robot
+from robokin.formats.plain_robots import FILES, PlainRobot, library_robot
 from robokin.quick.plain_words import answered
 from robokin.quick.questions import LONGEST_LINE, AskedLine
 from robokin.tables.written_rows import json_line
+
+if TYPE_CHECKING:
+    from robokin.formats.plain_files import FileRobots
 
 REFUSED = {
     "plot": "plot draws pictures, expected a command that answers with a document",
@@ -36,6 +39,7 @@ class QuestionServer:
         self.number = 0
         self.known: dict[str, tuple[str, tuple[int, ...], PlainRobot]] = {}
         """Robots of the library by the names that questions give them, with their files and these files' stamps."""
+        self.files: FileRobots | None = None
 
     def run(self) -> None:
         """Answer until the lines end. Raises OSError where they cannot be read, or answers cannot be written."""
@@ -76,7 +80,13 @@ class QuestionServer:
         return json_line(_front(question))[:-2] + b", " + document[1:]
 
     def robot(self, name: str) -> PlainRobot | None:
-        """A robot of the library, read anew when its file has changed."""
+        """A robot of the library or of a plain file, read anew when its file has changed."""
+        if name.endswith(FILES):
+            if self.files is None:
+                from robokin.formats.plain_files import FileRobots
+
+                self.files = FileRobots()
+            return self.files.robot(name)
         if name in self.known:
             path, stamp, robot = self.known[name]
             if _stamp(path) == stamp:

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 CHAINS = "chains.jsonl"
 
+FILES = (".yaml", ".yml")
+"""Endings of descriptions in robokin's own format."""
+
 NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 """Names of the library."""
 

@@ -18,8 +18,9 @@ from robokin.formats.foreign_texts import other_format
 from robokin.formats.node_values import Context, choice_of, expression_text, fields_of, text_of
 from robokin.formats.number_expressions import RESERVED, Scope, Value
 from robokin.formats.parameters import Parameters
+from robokin.formats.plain_yaml import plain_tree
 from robokin.formats.schema import KINDS, MECHANISM, TREE, UNITS, VERSION, WHEELED
-from robokin.formats.yaml_tree import FilePlace, Mapping, Node, Scalar, describe, read_tree
+from robokin.formats.yaml_tree import FilePlace, Mapping, Node, Scalar, describe
 from robokin.model import Mechanism, Robot, Tree, WheeledBase
 from robokin.units import Units
 
@@ -114,7 +115,7 @@ def _described(
     text: str, file: str, overrides: MappingType[str, str], id: str, mode: int | None, faults: Faults
 ) -> Robot | Mechanism | WheeledBase | Tree:
     try:
-        root = read_tree(text, file, faults)
+        root = plain_tree(text, file) or _any_tree(text, file, faults)
         if not isinstance(root, Mapping):
             raise root.mark.error(
                 f"found {describe(root)}, expected a description: `robokin: 1`, `name: …`, `joints: …`"
@@ -155,6 +156,13 @@ def _described(
     head = _head(fields, overrides, id, file, faults)
     _refuse_mode(mode, head)
     return read_robot(head)
+
+
+def _any_tree(text: str, file: str, faults: Faults) -> Node:
+    """The tree of a text that is not plain."""
+    from robokin.formats.yaml_reader import read_tree  # PyYAML, which takes longer to load than most answers
+
+    return read_tree(text, file, faults)
 
 
 def _refuse_mode(mode: int | None, head: Head) -> None:

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 from robokin.errors import ExpressionError, did_you_mean, shown
 from robokin.formats.faults import Faults
-from robokin.formats.yaml_tree import Mapping, Node, Scalar, read_tree
+from robokin.formats.yaml_reader import read_tree
+from robokin.formats.yaml_tree import Mapping, Node, Scalar
 
 ANGLE_TAG = re.compile(
     r"!(degrees|radians)[ \t]+([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(?![\w.*/(])"

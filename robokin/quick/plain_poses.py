@@ -6,7 +6,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from robokin.errors import InputError
-from robokin.formats.plain_robots import library_robot
+from robokin.formats.plain_robots import FILES, library_robot
 from robokin.formats.typed_angles import unit_of_angles
 from robokin.records.envelope import configuration_record, envelope
 from robokin.rotation_entries import Floats, quaternion_of_floats, rpy_of_entries
@@ -72,12 +72,21 @@ def plain_pose(robot: PlainRobot | None, units: Units, q: Array) -> PlainPose | 
         return None
 
 
+def _known(name: str) -> PlainRobot | None:
+    """An arm of the library, or of a plain file of one's own; None where the file must be read."""
+    if not name.endswith(FILES):
+        return library_robot(name)
+    from robokin.formats.plain_files import file_robot
+
+    return file_robot(name)
+
+
 def fk_written(name: str, given: Mapping[str, str], kind: str, find: Find | None) -> bytes | None:
     """What `robokin fk NAME` prints of one configuration in one of `KINDS`; None where the parser must look.
 
     `given` holds --q, and --angle and --length where they are there; `find` looks robots of the library up.
     """
-    robot = (find or library_robot)(name)
+    robot = (find or _known)(name)
     if robot is None:
         return None
     units = robot.units

@@ -193,3 +193,20 @@ def test_the_kept_chains_are_those_of_the_library():
         numbers = [(np.array(line.pop("constants")), np.array(line.pop("offsets"))) for line in (old, new)]
         assert old == new
         assert all(np.allclose(a, b, rtol=1e-15, atol=4e-16) for a, b in zip(*numbers, strict=True))
+
+
+def test_a_file_of_ones_own_is_answered_as_by_the_parser(tmp_path):
+    rng = random.Random(31)
+    read = 0
+    for name in rng.sample(ARMS, 24):
+        path = tmp_path / f"my-{name}.yaml"
+        shutil.copy(library.library_file(name), path)
+        for form in rng.sample(FORMS, 2):
+            units = library_robot(name).units
+            options = dict(pairwise(part for word in form for part in word.split("=")))
+            units = units.override(options.get("--length"), options.get("--angle"))
+            words = ["fk", str(path), "--q", inside(rng, library_robot(name), units), *form]
+            data = answered(words)
+            assert data is None or data == said(words), words
+            read += data is not None
+    assert read > 10

@@ -10,7 +10,8 @@ from formats.texts import HEAD, arm, error_of, place
 from sweeps import sweep
 
 from robokin.formats import read_text
-from robokin.formats.yaml_tree import Mapping, Scalar, Sequence, describe, read_tree
+from robokin.formats.yaml_reader import read_tree
+from robokin.formats.yaml_tree import Mapping, Scalar, Sequence, describe
 
 LOADERS = ["libyaml", "python"]
 
