@@ -48,7 +48,7 @@ def answered_batch(request: Request, T: Array, cores: int | None) -> BatchResult
     kind = _native_kind(request)
     if kind is not None:
         lefts = [np.empty(0, dtype=np.intp)]
-        answers = ordered_map(partial(kind, request), _blocks(T), cores)
+        answers = ordered_map(partial(kind, request), _blocks(T), cores, workers="threads")
         for start, plain in zip(_starts(T), answers, strict=True):
             lefts.append(start + np.flatnonzero(~plain.plain))
             whole = slice(start, start + len(plain.plain))
