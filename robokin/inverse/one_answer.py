@@ -17,7 +17,7 @@ from robokin.arrays import Array
 from robokin.inverse.claims import BASES, COUNTED, counted_sentence
 from robokin.inverse.one_target_arm import OneTargetArm
 from robokin.inverse.solution_names import branch_names
-from robokin.inverse.solutions import Question, Result, named_later
+from robokin.inverse.solutions import Question, Result, named_later, regular_result
 from robokin.model import Robot
 from robokin.spatial.angles import TURN
 
@@ -46,9 +46,7 @@ class OneAnswer:
         """The answer for a question."""
         table, most = self.table, self.most
         values: list[list[float]] = table[:, 6:].tolist()
-        rows = list(range(len(values)))
-        if self.limits:
-            rows = [k for k in rows if values[k][INSIDE]]
+        rows = [k for k, row in enumerate(values) if row[INSIDE] or not self.limits]
         if self.wish is not None:
             wish = self.wish.tolist()
             moves = [max([abs(a - b) for a, b in zip(q, wish, strict=True)]) for q in table[:, :6].tolist()]
@@ -57,7 +55,8 @@ class OneAnswer:
         if most is not None:
             rows = rows[:most]
         everything = table[:, :6]
-        q = everything.copy() if len(rows) == len(values) and self.wish is None else everything.take(rows, axis=0)
+        copied = everything.copy()
+        q = [copied[row] for row in rows]
         find = _Names(self.arm.robot, everything, rows).name
         kept = [values[row] for row in rows]
         inside, errors = [row[INSIDE] != 0.0 for row in kept], [(row[0], row[1]) for row in kept]
@@ -70,9 +69,10 @@ class OneAnswer:
         counts["listed"] = len(rows)
         if self.limits:
             told = table.shape[1] > 6 + TURNS
-            counts["turns"] = sum([int(values[row][TURNS]) if told else self._equivalents(row) for row in rows])
-        return Result(
-            solutions, complete, analysis.method, counts=counts, postures=complete,
+            turns = [row[TURNS] for row in kept] if told else map(self._equivalents, rows)
+            counts["turns"] = int(sum(turns))
+        return regular_result(
+            solutions=solutions, complete=complete, method=analysis.method, counts=counts, postures=complete,
             basis=BASES[COUNTED] if complete else None,
             certificate=counted_sentence(analysis.number, count, self.arm.form is not None), all_known=True,
             question=question, families_complete=True,

@@ -55,9 +55,13 @@ LATER = {"branch": "_name", "free": "_free"}
 """Where a solution keeps what finds a field that is not worked out yet: a function, and what it is asked."""
 
 
+class SolutionInMaking(Brief):
+    """A solution before it is frozen: fields are set in a fraction of the time, and then it is made a `Solution`."""
+
+
 def named_later(
     name: Callable[[int], str],
-    q: Array,
+    q: Iterable[Array],
     within_limits: Iterable[bool],
     errors: Iterable[tuple[float, float]],
     free: Iterable[tuple[int, ...]] | Callable[[int], tuple[int, ...]],
@@ -68,21 +72,20 @@ def named_later(
     errors: of each the distance and the angle [m, rad]; name: gives the branch of the one in a place, counted from
     `first`, and `free`, if it is a function, its free joints.
     """
-    made = []
+    made: list[Any] = []
     known_free = None if callable(free) else iter(free)
-    new = object.__new__
     for place, (one_q, inside, (position, angle)) in enumerate(zip(q, within_limits, errors, strict=True), first):
-        one = new(Solution)
-        known = one.__dict__
-        known["q"] = one_q
-        known["within_limits"] = inside
-        known["position_error"] = position
-        known["angle_error"] = angle
-        known["_name"] = (name, place)
+        one: Any = SolutionInMaking()
+        one.q = one_q
+        one.within_limits = inside
+        one.position_error = position
+        one.angle_error = angle
+        one._name = (name, place)
         if known_free is None:
-            known["_free"] = (free, place)
+            one._free = (free, place)
         else:
-            known["free"] = next(known_free)
+            one.free = next(known_free)
+        one.__class__ = Solution
         made.append(one)
     return tuple(made)
 
@@ -241,6 +244,16 @@ class Result(Answer):
 
 FIELDS = frozenset(part.name for part in fields(Result))
 """What is asked of a result."""
+
+NOT_SAID = {"reason": None, "nearest": None, "families": ()}
+"""Of a result that has solutions and none that is one of many."""
+
+
+def regular_result(**told: Any) -> Result:
+    """A result of which all fields are told but those in `NOT_SAID`, made in a fraction of the usual time."""
+    one = object.__new__(Result)
+    one.__dict__.update(NOT_SAID, **told)
+    return one
 
 
 class UnmadeResult(Result):
