@@ -18,7 +18,9 @@ LONGEST = 1 << 16
 DEEPEST = 8
 """Levels of nesting."""
 
-KEY = r"[A-Za-z_](?:[A-Za-z0-9_-]*[A-Za-z0-9_])?"
+KEY = r"[A-Za-z_](?:[A-Za-z0-9_-]{0,98}[A-Za-z0-9_])?"
+"""A key; YAML has none of more than 1,024 characters."""
+
 START = r"(?:[A-Za-z0-9_.(+]|-(?=[A-Za-z0-9_.(]))"
 """What a word starts with that is nothing else in YAML."""
 

@@ -161,6 +161,7 @@ def test_a_plain_table_is_read_the_short_way() -> None:
         ("R, theta", "F, theta"),
         ("poses", "tool: Rot(x, 30)\nposes"),
         ("joints:", "other: 1\njoints:"),
+        ("joints:", f"{1100 * 'k'}: 1\njoints:"),
     ],
 )
 def test_what_may_need_a_word_is_left_to_the_reader(old: str, new: str) -> None:
