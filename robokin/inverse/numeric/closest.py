@@ -2,7 +2,8 @@
 
 Statement, the law of what closest means. Of all configurations within the limits those count whose position
 is nearest to the target's (to within `SAME_PLACE`); of these, those whose orientation is nearest, by the angle
-of the turn that is left (to within `SAME_ANGLE`); of these, that with the least joint move from home.
+of the turn that is left (to within `SAME_ANGLE`); of these, that with the least joint move from home, and of several
+that with the least sum of moves.
 Derivation. A descent ends in the minimum that it starts above (`position_first`), so that what counts is where it
 starts: in each of as many parts of the joint space, inside the box of joint limits and on its faces, and at its
 corners (`initial_guesses`). All go down for some steps of ½|p - t|² + w (1 - cos θ), position and angle together; the
@@ -193,8 +194,9 @@ def _search(ways: Ways, T: Array, x: Array, known: int, home: Array, opened: int
     found = at_the_edge(ways, many, found, LEAST, 20, 25)
     found = better(found, turned_in_place(ways, many, found))
     x = found.x.T.reshape(m, count, n)
-    move, whole = _moves(ways.chain, x, home, own), np.max(np.abs(x - home)[:, :, :own], axis=2)
-    best = _closest(found.distance.reshape(m, count), found.angle.reshape(m, count), move, whole)
+    move, away = _moves(ways.chain, x, home, own), np.abs(x - home)[:, :, :own]
+    moves = move, np.max(away, axis=2), np.sum(away, axis=2)
+    best = _closest(found.distance.reshape(m, count), found.angle.reshape(m, count), moves)
     return found.pick(best + count * np.arange(m))
 
 
@@ -231,13 +233,14 @@ def _moves(chain: Chain, x: Array, home: Array, own: int) -> Array:
     return farthest
 
 
-def _closest(distance: Array, angle: Array, farthest: Array, whole: Array) -> Index:
+def _closest(distance: Array, angle: Array, moves: tuple[Array, ...]) -> Index:
     """(m,) the best of ends with distances [size], angles and joint moves, each (m, k), by the law above.
 
-    farthest: the greatest moves with angles on the circle; whole: without, which tell apart what is a full turn apart.
+    moves: the greatest with angles on the circle; without, which tell apart what is a full turn apart; their sums, so
+    that not rounding tells apart what a joint that moves farther than all others leaves alike.
     """
-    angle = np.where(distance <= distance.min(axis=1, keepdims=True) + SAME_PLACE, angle, np.inf)
-    farthest = np.where(angle <= angle.min(axis=1, keepdims=True) + SAME_ANGLE, farthest, np.inf)
-    whole = np.where(farthest <= farthest.min(axis=1, keepdims=True) + SAME_ANGLE, whole, np.inf)
-    best: Index = np.argmin(whole, axis=1)
+    law = np.where(distance <= distance.min(axis=1, keepdims=True) + SAME_PLACE, angle, np.inf)
+    for move in moves:
+        law = np.where(law <= law.min(axis=1, keepdims=True) + SAME_ANGLE, move, np.inf)
+    best: Index = np.argmin(law, axis=1)
     return best
