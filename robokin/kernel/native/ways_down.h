@@ -65,7 +65,7 @@ static void moved_tools(const Chain *chain, double x[MOST_MOVED][LANES], double 
     FOR_PARTS {
         Part away = {0.0}, turned = {0.0};
         for (int r = 0; r < 3; r++) {
-            Part off = (PART(F.v[9 + r]) - PART(W[9 + r])) / size;
+            Part off = (PART(F.v[9 + r]) - PART(W[9 + r])) * per;
             PART(to->e[r]) = off;
             away += off * off;
         }
@@ -142,7 +142,7 @@ static void way_solved(int n, const Slope *here, double held[MOST_MOVED][LANES],
         }
         /* What is not positive is made infinite: nothing is taken from the rows below it, and nothing grows. */
         for (int k = 0; k < n; k++) {
-            Bits positive = PART(A[k][k]) > WAY_PIVOT;
+            Bits positive = PART(A[k][k]) > WAY_PIVOT * ONE;
             Part D = chosen(positive, PART(A[k][k]), none);
             all &= positive & (D < none);
             PART(A[k][k]) = ONE / D;
@@ -229,14 +229,14 @@ static void judged(int n, Ways *at, double still, double least, long long taken[
         }
         Part before = CONSTANT(now->f), f = CONSTANT(after->f), noise = WAY_NOISE * before + DBL_MIN;
         Part ratio = (before - f + noise) / (greater(foretold, zero) + noise);
-        Bits better = (PART(at->definite) != zero) & (f <= before + noise) & (ratio > 1e-4);
+        Bits better = (PART(at->definite) != zero) & (f <= before + noise) & (ratio > 1e-4 * ONE);
         Part part = 2.0 * lesser(ratio, ONE) - ONE, shrunk = greater(ONE - part * part * part, WAY_SHRINK * ONE);
         Part damping = chosen(better, shrunk, PART(at->growth)) * PART(at->damping);
         damping = lesser(greater(damping, least * ONE), WAY_HOPELESS * ONE);
         PART(at->damping) = damping;
         PART(at->growth) = chosen(better, 4.0 * ONE, 2.0 * PART(at->growth));
         BITS(taken) = better;
-        BITS(arrived) = (better & (PART(at->longest) < still)) | ~(damping <= WAY_STUCK);
+        BITS(arrived) = (better & (PART(at->longest) < still * ONE)) | ~(damping <= WAY_STUCK * ONE);
     }
 }
 
