@@ -54,6 +54,9 @@ if TYPE_CHECKING:
     from robokin.model import Robot as Robot
     from robokin.model import Tree as Tree
     from robokin.model import WheeledBase as WheeledBase
+    from robokin.question_sheets import mark_sheet as mark_sheet
+    from robokin.question_sheets import question_sheet as question_sheet
+    from robokin.question_sheets import statistics_of as statistics_of
     from robokin.spatial.conversions import axis_angle_from_rotation as axis_angle_from_rotation
     from robokin.spatial.conversions import euler_from_rotation as euler_from_rotation
     from robokin.spatial.conversions import quaternion_from_rotation as quaternion_from_rotation
@@ -120,6 +123,9 @@ _HOMES = {
     "check_configuration": "robokin.grading.marks",
     "check_solutions": "robokin.grading.marks",
     "check_table": "robokin.grading.marks",
+    "question_sheet": "robokin.question_sheets",
+    "mark_sheet": "robokin.question_sheets",
+    "statistics_of": "robokin.question_sheets",
     "InputTypeError": "robokin.errors",
     "library_names": "robokin.formats.library",
     "rotation_from_rpy": "robokin.spatial.conversions",

@@ -19,6 +19,7 @@ from robokin.brief import Answer
 from robokin.documents import expect_units
 from robokin.errors import InputError, RobokinError, shown
 from robokin.expected import described, expect_choice, expect_kind, expect_numbers, has_names, named_column, names_of
+from robokin.grading.class_statistics import ClassStatistics
 from robokin.grading.mark_items import Report
 from robokin.inverse.joint_paths import Path
 from robokin.inverse.solutions import BatchResult, Result
@@ -32,6 +33,7 @@ from robokin.records.jacobian_records import JacobianRecords
 from robokin.records.mark_records import report_rows
 from robokin.records.path_records import PathRecords
 from robokin.records.pose_records import poses_in
+from robokin.records.statistics_records import statistics_rows
 from robokin.reports import jacobian_report, solution_report
 from robokin.tables.headings import FoundColumns
 from robokin.tables.joint_columns import JointColumns
@@ -119,7 +121,9 @@ def ik(robot: Robot, T: Any, units: Units | None = None, **options: Any) -> Any:
 
 
 def of(answer: Answer | Report, units: Units | None = None) -> Any:
-    """An answer as a frame with the columns of its CSV: solutions, a path, Jacobians, marks. Raises InputError.
+    """An answer as a frame with the columns of its CSV: solutions, a path, Jacobians, marks, a class's statistics.
+
+    Raises InputError.
 
     Lengths and angles are in the units, by default metres and radians; marks are in those of the report.
     """
@@ -137,6 +141,9 @@ def of(answer: Answer | Report, units: Units | None = None) -> Any:
         return _jacobians(answer, own)
     if isinstance(answer, Report):
         names, rows = report_rows(answer)
+        return _pandas().DataFrame(rows, columns=names)
+    if isinstance(answer, ClassStatistics):
+        names, rows = statistics_rows(answer)
         return _pandas().DataFrame(rows, columns=names)
     expect_kind(answer, Result, "answer", "solutions, a path, Jacobians or marks: other answers are no tables")
     return None

@@ -25,6 +25,7 @@ from robokin.model import CoupledRobot, Mechanism, Robot, Tree, WheeledBase, exp
 from robokin.units import Units
 
 if TYPE_CHECKING:
+    from robokin.grading.mark_items import Report
     from robokin.inverse.solutions import Question, Result
     from robokin.kinematics.velocity import Differential, TaskName
 
@@ -39,6 +40,7 @@ def document_of(value: Answer, units: Units | None = None) -> Any:
     Of a robot, a mechanism, a wheeled base or a tree that of `robokin show`.
     Raises InputError for what is no answer.
     """
+    from robokin.grading.class_statistics import ClassStatistics
     from robokin.inverse.joint_paths import Path
     from robokin.inverse.solutions import BatchResult, Result
     from robokin.inverse.tip_targets import TipAnswer
@@ -54,6 +56,10 @@ def document_of(value: Answer, units: Units | None = None) -> Any:
         return show(value, own)
     if isinstance(value, Symbols):
         return value.record(own)
+    if isinstance(value, ClassStatistics):
+        from robokin.records.statistics_records import statistics_record
+
+        return statistics_record(value)
     if isinstance(value, Result | BatchResult):
         return _solutions(value, own)
     if isinstance(value, TipAnswer):
@@ -97,6 +103,19 @@ def show(entry: Robot | Mechanism | WheeledBase | Tree, units: Units | None = No
             entry, Robot, "entry", "a robot, a mechanism or a wheeled base, as robokin.load(name_or_path) gives"
         )
     return described_record(entry, entry.units if units is None else expect_units(units))
+
+
+def check(report: Report, feedback: str = "answer") -> Document:
+    """What `robokin check` says of marks, as a level of feedback (verdict, part, distance, answer) tells it.
+
+    Raises InputError.
+    """
+    from robokin.grading.feedback import LEVELS
+    from robokin.grading.mark_items import Report
+    from robokin.records.mark_records import report_record
+
+    report = expect_kind(report, Report, "report", "marks, as robokin.mark_sheet gives them")
+    return report_record(report, expect_choice(feedback, LEVELS, "feedback"))
 
 
 def library() -> list[Document]:

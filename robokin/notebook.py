@@ -48,6 +48,7 @@ def html_of(value: Answer | Brief) -> str:
 
 def _parts(value: Answer | Brief) -> Sequence[Part]:
     """What the shell's page of a value consists of; of a part of an answer its fields, a row each."""
+    from robokin.grading.class_statistics import ClassStatistics
     from robokin.grading.mark_items import Report
     from robokin.mobility.manoeuvrability import Manoeuvrability
     from robokin.mobility.verdict import Mobility
@@ -69,6 +70,10 @@ def _parts(value: Answer | Brief) -> Sequence[Part]:
         from robokin.reports.workspace_tables import workspace_parts
 
         return workspace_parts(value, value.space.robot.units)
+    if isinstance(value, ClassStatistics):
+        from robokin.reports.statistics_page import statistics_parts
+
+        return statistics_parts(document_of(value))
     if isinstance(value, Report):
         from robokin.reports.mark_report import report_parts
 

@@ -32,6 +32,7 @@ GROUPS = {
     "Workspace and mobility": ("analyse_workspace", "mobility_of", "manoeuvrability_of"),
     "Marks": (
         "check_pose", "check_configuration", "check_solutions", "check_table", "Tolerance", "default_tolerance",
+        "question_sheet", "mark_sheet", "statistics_of",
     ),
     "Poses and rotations": (
         "pose", "pose_parts", "invert_pose", "transform",

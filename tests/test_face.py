@@ -12,6 +12,7 @@ import pickle
 import re
 import subprocess
 import sys
+import tempfile
 from fractions import Fraction
 from pathlib import Path
 
@@ -33,6 +34,12 @@ CAR = robokin.load_wheeled("car")
 Q = np.radians([10.0, -50.0, 100.0, 20.0, 30.0, 40.0])
 T = robokin.forward_kinematics(PUMA, Q)
 PLANAR_T = robokin.forward_kinematics(PLANAR, [0.3, 0.4])
+SHEET_OF_QUESTIONS = robokin.question_sheet(PLANAR, "fk,dof", seed=7, students=["Ann", "Ben"], name="week3")
+PLACE = tempfile.TemporaryDirectory()
+SHEET_OF_QUESTIONS.write(f"{PLACE.name}/week3")
+KEY, ANSWERS = f"{PLACE.name}/week3/key", f"{PLACE.name}/week3/key/answers.csv"
+FORM = f"{PLACE.name}/week3/students/Ann/answers.csv"
+MARKS = robokin.mark_sheet(KEY, ANSWERS, budget=None)
 IIWA = robokin.load("iiwa14")
 IIWA_T = robokin.forward_kinematics(IIWA, np.ones(7))
 
@@ -81,6 +88,7 @@ def public_values():
     yield from (robokin.mobility_of(FOUR_BAR), robokin.manoeuvrability_of(CAR), robokin.symbols(PLANAR))
     yield from (robokin.draw(PLANAR, kind="text"), robokin.notebook.matrix(T), robokin.default_tolerance(PUMA))
     yield robokin.check_pose(PUMA, Q, T)
+    yield from (SHEET_OF_QUESTIONS, MARKS, robokin.statistics_of(MARKS))
 
 
 @pytest.mark.parametrize("value", [*public_values()], ids=lambda value: type(value).__name__)
@@ -371,11 +379,19 @@ RIGHT = {
     "check_solutions": {
         "robot": PLANAR, "T": PLANAR_T, "answers": [[0, 0]], "tolerance": None, "task": "pose", "limits": True
     },
+    "question_sheet": {
+        "about": "planar2r", "questions": "fk", "seed": 7, "students": ["Ann", "Ben"], "name": "week3",
+    },
+    "mark_sheet": {
+        "key": KEY, "answers": FORM, "student": "Ann", "budget": None, "partial": 0.5, "follow": False,
+    },
+    "statistics_of": {"marks": MARKS},
     "check_table": {"robot": PUMA, "given": PUMA, "tolerance": None, "up_to": ["base"]},
     **{f"rotation_from_{name}": {name: values} for name, values in
        {"rpy": [1, 2, 3], "euler": [1, 2, 3], "rotvec": [1, 2, 3], "quaternion": [1, 0, 0, 0]}.items()},
     "rotation_from_axis_angle": {"axis": [0, 0, 1], "angle": 1.0},
     **{f"{name}_from_rotation": {"R": np.eye(3)} for name in ("rpy", "euler", "rotvec", "quaternion", "axis_angle")},
+    "documents.check": {"report": MARKS, "feedback": "part"},
     "documents.fk": {"robot": PUMA, "q": Q, "frames": False, "orientation": None, "units": None},
     "documents.ik": {"robot": PLANAR, "T": PLANAR_T, "units": None, "explain": False},
     "documents.jacobian": {"robot": PUMA, "q": Q, "frame": "base", "task": None, "units": None},

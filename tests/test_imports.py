@@ -17,7 +17,7 @@ ORDER = [
     "errors", "arrays", "expected", "unfinished_work", "files", "units", "number_text", "brief",
     "rotation_entries", "spatial", "model", "kernel", "jobs", "assembly", "kinematics", "formats", "tables", "inverse",
     "workspace", "mobility", "derivation", "grading", "pictures", "records", "reports", "quick", "drawings",
-    "symbol_matrices", "documents", "dataframes", "table_view", "notebook", "cli",
+    "symbol_matrices", "question_sheets", "documents", "dataframes", "table_view", "notebook", "cli",
 ]  # fmt: skip
 """Each room imports only rooms before it."""
 

@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from robokin.errors import InputError
@@ -31,6 +30,9 @@ from robokin.inverse.solve import TASKS
 from robokin.model import Robot, expect_robot
 from robokin.units import Units
 
+LONGEST = 1e6
+"""Seconds that an answer may be given."""
+
 
 def grade_poses(
     robot: Robot, q: Sequence[ArrayLike], T: Sequence[ArrayLike], tolerance: Tolerance | None = None, *,
@@ -46,7 +48,7 @@ def grade_poses(
     chosen = expect_choice(task, ("pose", "position"), "task")
     answers = [[GivenAnswer(GivenValue(AnsweredPose(expect_target(one), chosen)))] for one in T]
     questions = [expect_configuration(check.robot, one) for one in q]
-    return _graded("fk", check, questions, answers, ids, students, _rules(budget, partial))
+    return _graded("fk", check, questions, answers, ids, students, expect_rules(budget, partial))
 
 
 def grade_configurations(
@@ -71,7 +73,7 @@ def grade_configurations(
         for one in answers
     ]
     questions = [AnsweredPose(expect_target(one), chosen) for one in T]
-    return _graded("ik", check, questions, given, ids, students, _rules(budget, partial), check.prepared)
+    return _graded("ik", check, questions, given, ids, students, expect_rules(budget, partial), check.prepared)
 
 
 def grade_jacobians(
@@ -96,7 +98,7 @@ def grade_jacobians(
         scale = check.scale(IN_PLANE.get(len(values), range(6)))
         answers.append([GivenAnswer(GivenValue(values / scale))])
     questions = [expect_configuration(check.robot, one) for one in q]
-    return _graded("jacobian", check, questions, answers, ids, students, _rules(budget, partial))
+    return _graded("jacobian", check, questions, answers, ids, students, expect_rules(budget, partial))
 
 
 def grade_tables(
@@ -110,7 +112,7 @@ def grade_tables(
     """
     check = TableCheck(*_subject(robot, tolerance, units, table=True), expect_open(up_to))
     answers = [[GivenAnswer(GivenValue(expect_robot(one, "tables")))] for one in tables]
-    return _graded("dh", check, [None] * len(answers), answers, ids, students, _rules(budget, partial))
+    return _graded("dh", check, [None] * len(answers), answers, ids, students, expect_rules(budget, partial))
 
 
 def _subject(
@@ -125,8 +127,9 @@ def _subject(
     return robot, own, expect_tolerance(robot, tolerance, table=table)
 
 
-def _rules(budget: float | None, partial: float | None) -> Rules:
-    for name, value, most in (("budget", budget, np.inf), ("partial", partial, 1.0)):
+def expect_rules(budget: float | None, partial: float | None) -> Rules:
+    """What holds for all marks. Raises InputError."""
+    for name, value, most in (("budget", budget, LONGEST), ("partial", partial, 1.0)):
         if value is not None and not 0.0 < expect_number(value, name, f"a number up to {most:g}, or None") <= most:
             raise InputError(f"{name}: found {value:g}, expected a number above 0 up to {most:g}, or None")
     return Rules(budget, partial)

@@ -8,6 +8,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
+from robokin.brief import Answer
+from robokin.errors import counted
 from robokin.grading.mark_items import BLANK, NOT_ANSWERED
 from robokin.grading.pose_difference import PASS
 
@@ -56,13 +58,22 @@ class MistakeStatistics:
     questions: dict[str, int] = field(default_factory=dict)
 
 
-@dataclass
-class ClassStatistics:
-    """What a class did: the scores of each student, questions in their order, mistakes by how often they were made."""
+@dataclass(frozen=True, eq=False, repr=False)
+class ClassStatistics(Answer):
+    """What a class did: the scores of each student, questions in their order, mistakes by how often they were made.
+
+    source: where the marks are from.
+    """
 
     students: dict[str, list[float]]
     questions: list[QuestionStatistics]
     mistakes: list[MistakeStatistics]
+    source: str = ""
+
+    def __repr__(self) -> str:
+        """A line: how many students, how many of their answers are right, the score."""
+        right = f"{self.right} of {counted(self.answers, 'answer')} right"
+        return f"<statistics of {counted(len(self.students), 'student')}: {right}, score {self.score:.4g}>"
 
     @property
     def answers(self) -> int:
@@ -96,7 +107,7 @@ class ClassStatistics:
         return sorted(math.fsum(own) / len(own) for own in self.students.values())
 
 
-def class_statistics(marks: Iterable[dict[str, Any]]) -> ClassStatistics:
+def class_statistics(marks: Iterable[dict[str, Any]], source: str = "") -> ClassStatistics:
     """The statistics of marks as `robokin check` writes them in JSON. Marks that do not count are left out."""
     questions: dict[tuple[str, str, str], QuestionStatistics] = {}
     mistakes: dict[str, MistakeStatistics] = {}
@@ -118,4 +129,4 @@ def class_statistics(marks: Iterable[dict[str, Any]]) -> ClassStatistics:
             found.students.add(student)
             found.questions[id] = found.questions.get(id, 0) + 1
     ordered = sorted(mistakes.values(), key=lambda one: (-one.answers, one.name))
-    return ClassStatistics(students, [*questions.values()], ordered)
+    return ClassStatistics(students, [*questions.values()], ordered, source)

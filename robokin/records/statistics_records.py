@@ -8,10 +8,10 @@ from robokin.grading.class_statistics import ClassStatistics, QuestionStatistics
 from robokin.records.envelope import envelope
 
 
-def statistics_record(found: ClassStatistics, file: str) -> dict[str, Any]:
+def statistics_record(found: ClassStatistics) -> dict[str, Any]:
     """The document of `robokin check statistics`."""
     scores = found.student_scores
-    return envelope("file", file, None) | {
+    return envelope("file", found.source, None) | {
         "students": len(found.students),
         "answers": found.answers,
         "right": found.right,

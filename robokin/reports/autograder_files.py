@@ -57,13 +57,18 @@ PYTHONPATH="$root/source/python" "$python" -P -m robokin check sheet key -i "$ro
     --metadata "$root/submission_metadata.json" --gradescope "$root/results/results.json" @OPTIONS@ \\
     >/dev/null 2>"$root/notes.txt"
 status=$?
-# 0: all right; 3: something wrong, which is no failure of the autograder.
-if [ "$status" -ne 0 ] && [ "$status" -ne 3 ]; then
-    "$python" -c 'import json, sys
-said = open(sys.argv[1], encoding="utf-8", errors="replace").read()
-with open(sys.argv[2], "w", encoding="utf-8") as file:
-    json.dump({"score": 0.0, "output": "Not marked. " + said}, file)' "$root/notes.txt" "$root/results/results.json"
-fi
+# 0: all right; 3: something wrong, which is no failure of the autograder. What was not marked is told, and why.
+"$python" -c 'import json, sys
+status, notes, results = sys.argv[1:]
+said = open(notes, encoding="utf-8", errors="replace").read(4000).strip()
+if status in ("0", "3"):
+    with open(results, encoding="utf-8") as file:
+        document = json.load(file)
+    document["output"] = "\\n".join(filter(None, (document["output"], said)))
+else:
+    document = {"score": 0.0, "output": "Not marked. " + said}
+with open(results, "w", encoding="utf-8") as file:
+    json.dump(document, file, indent=2, ensure_ascii=False)' "$status" "$root/notes.txt" "$root/results/results.json"
 """
 
 DOCKERFILE = """\
@@ -93,6 +98,12 @@ def autograder_zip(key: Iterable[tuple[str, bytes]], options: str) -> bytes:
             entry.external_attr = (0o100755 if path in ("setup.sh", "run_autograder") else 0o100644) << 16
             archive.writestr(entry, data)
     return kept.getvalue()
+
+
+def autograder_options(partial: float | None, points: float | None) -> str:
+    """Those options of `robokin check sheet`; None is not said."""
+    given = {"--partial": partial, "--points": points}
+    return " ".join(f"{name} {value:.12g}" for name, value in given.items() if value is not None)
 
 
 def _package() -> Iterator[tuple[str, bytes]]:

@@ -30,7 +30,7 @@ def sheet_page(report: Report, level: str) -> bytes:
             drawn.add_row(*cells, f"{item.score:.2f}", style=None if item.passed else "red")
         parts.append(drawn)
     else:
-        record = statistics_record(class_statistics(item_record(item, level) for item in report.items), "")
+        record = statistics_record(class_statistics(item_record(item, level) for item in report.items))
         sums = table()
         for name in ("student", "right", "of", "score"):
             sums.add_column(name, justify="left" if name == "student" else "right")

@@ -5,12 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 from robokin.errors import counted
+from robokin.reports.page_parts import Part
 from robokin.reports.page_tables import heading, render, table
 
 
 def statistics_page(record: dict[str, Any]) -> bytes:
     """The page of a class's statistics, from their document."""
-    parts: list[Any] = [heading(f"check statistics: {counted(record['students'], 'student')}", "")]
+    return render(*statistics_parts(record))
+
+
+def statistics_parts(record: dict[str, Any]) -> list[Part]:
+    """The same as the parts of a page."""
+    parts: list[Part] = [heading(f"check statistics: {counted(record['students'], 'student')}", "")]
     parts += ["", question_table(record)]
     if record["mistakes"]:
         parts += ["", mistake_table(record)]
@@ -18,7 +24,7 @@ def statistics_page(record: dict[str, Any]) -> bytes:
     if record["wrong"]:
         said += f"; of {record['wrong']} wrong, {record['known']} with a known mistake"
     scores = f"students: lowest {record['lowest']:.2f}, median {record['median']:.2f}, highest {record['highest']:.2f}"
-    return render(*parts, "", said, scores)
+    return [*parts, "", said, scores]
 
 
 def question_table(record: dict[str, Any]) -> Any:

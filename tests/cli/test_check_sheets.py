@@ -419,6 +419,11 @@ def test_a_submission_of_nobody_in_the_class_is_told_so(autograder):
     nobody = run_autograder(root, {"email": "eve@uni.example", "id": 6, "name": "Eve"})
     assert nobody["score"] == 0.0
     assert "expected one" in nobody["output"]
+    (root / "submission" / "answers.csv").write_bytes(b"\xff\xfe" + "student,id".encode("utf-16-le"))
+    unread = run_autograder(root, {"email": "ada@uni.example", "id": 5, "name": "Ada"})
+    assert (unread["score"], len(unread["tests"])) == (0.0, 3)
+    assert "answers.csv" in unread["output"]
+    assert "not marked" in unread["output"]
 
 
 def gaps(text):
@@ -464,3 +469,37 @@ def test_a_moodle_quiz_is_xml_whose_gaps_hold_the_key(call, tmp_path, class_):
             for gap, answer_ in zip(found, exercise.answers(given), strict=True):
                 assert min(abs(value - float(answer_)) for value, _ in gap) < 1e-9
                 assert all(far >= 0 for _, far in gap)
+
+
+def test_python_makes_marks_and_counts_a_sheet_as_the_shell_does(call, tmp_path, class_):
+    place, quiz, archive = tmp_path / "week3", tmp_path / "q.xml", tmp_path / "a.zip"
+    made = call("check", "new", "planar3r-brac", "--questions", "fk,ik-all,dof", "--students", class_, "--seed", "7",
+                "-o", place, "--moodle", quiz, "--autograder", archive, "--points", "30", "--json")  # fmt: skip
+    students = [one["student"] for one in csv.DictReader(class_.read_text().splitlines())]
+    sheet = robokin.question_sheet("planar3r-brac", "fk,ik-all,dof", seed=7, students=students, name="week3")
+    assert sheet.files() == {
+        path.relative_to(place).as_posix(): path.read_bytes() for path in place.rglob("*") if path.is_file()
+    }
+    with pytest.warns(UserWarning, match=r"question 2 \(ik-all\) is not in the quiz"):
+        assert sheet.moodle() == quiz.read_bytes()
+    assert sheet.autograder(points=30) == archive.read_bytes()
+    others = {"moodle": str(quiz), "autograder": str(archive)}
+    assert sheet.record(str(place)) | others == json.loads(made.text)
+    # Robots that are loaded already, and a sheet for nobody in particular.
+    again = robokin.question_sheet(
+        [robokin.load("planar3r-brac"), robokin.load_mechanism("four-bar")], "fk,dof", seed=7
+    )
+    assert (again.students, [one["about"] for one in again.questions]) == (("practice",), ["planar3r-brac", "four-bar"])
+
+    answers = place / "key" / "answers.csv"
+    lines = [*csv.DictReader(answers.read_text().splitlines())]
+    lines[0]["answer"] = str(float(lines[0]["answer"]) / 100)
+    written(answers, [*lines, lines[0] | {"id": "9"}])
+    with pytest.warns(UserWarning, match="there is no question '9'; not marked"):
+        marks = robokin.mark_sheet(place / "key", [answers], partial=0.5, budget=None)
+    marked = call("check", "sheet", place / "key", "-i", answers, "--partial", "0.5", "--json")
+    assert marks.record() == json.loads(marked.text)
+    (tmp_path / "m.json").write_text(marked.text)
+    counted = json.loads(call("check", "statistics", tmp_path / "m.json", "--json").text)
+    assert robokin.statistics_of(tmp_path / "m.json").record() == counted
+    assert robokin.statistics_of(marks).record() | {"id": counted["id"], "file": counted["file"]} == counted

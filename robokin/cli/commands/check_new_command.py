@@ -76,7 +76,7 @@ def command(
     from robokin.grading.answers.sheet_subjects import sheet_exercises
     from robokin.grading.questions.sheets import drawn_sheet, wanted_questions
     from robokin.records.sheet_records import new_sheet_record
-    from robokin.reports.autograder_files import autograder_zip
+    from robokin.reports.autograder_files import autograder_options, autograder_zip
     from robokin.reports.moodle_quiz import moodle_quiz
     from robokin.reports.new_sheet_page import new_sheet_page
     from robokin.reports.sheet_files import key_only, sheet_files, sheet_name
@@ -110,10 +110,7 @@ def command(
         with sink(places.moodle, "--moodle") as stream:
             stream.write(quiz)
     if places.autograder is not None:
-        given = {"--partial": places.partial, "--points": places.points}
-        options = " ".join(
-            f"{name} {plain_number(text, name):.12g}" for name, text in given.items() if text is not None
-        )
+        options = autograder_options(plain_number(places.partial, "--partial"), plain_number(places.points, "--points"))
         with sink(places.autograder, "--autograder") as stream:
             stream.write(autograder_zip(key_only(sheet, name), options))
     record = new_sheet_record(sheet, name, places.output, {"moodle": places.moodle, "autograder": places.autograder})

@@ -39,8 +39,8 @@ def command(
     from robokin.tables.written_rows import csv_without_formulas, written
 
     kind = answer.kind
-    found = class_statistics(mark for file in files for mark in read_marks(file))
-    record = statistics_record(found, " ".join(files))
+    found = class_statistics((mark for file in files for mark in read_marks(file)), " ".join(files))
+    record = statistics_record(found)
     with sink(answer.file) as stream:
         stream.writelines(
             written(
