@@ -99,8 +99,11 @@ class JointExercise(RobotExercise):
             self._keep({i: candidates[i] for i in chosen if good[i]}, targets)
             for i, result in results.items() if self.scarce else ():
                 if good[i]:
-                    within = self.robot.within_limits(np.array([solution.q for solution in result.solutions]))
-                    good[i] = len(self.solutions(candidates[i])) == np.count_nonzero(within)
+                    every = np.array([solution.q for solution in result.solutions])
+                    exact = [*every[self.robot.within_limits(every)]]
+                    good[i] = len(self.solutions(candidates[i])) == len(exact)
+                    # Of the rounded target only something near is known, of the pose before rounding the solutions.
+                    self.known[tuple(given_values(self.form, candidates[i]))] = exact
         return good
 
     @cached_property
