@@ -90,6 +90,8 @@ def build(folder: Path, cache: Path, numpy: Path | None = None) -> None:
     (folder / "packages.zip").write_bytes(packages(numpy or fetched(NUMPY, cache)))
     if node := shutil.which("node"):
         subprocess.run([node, HERE / "compile.mjs", folder], check=True)
+    # Many servers do not know what an .mjs file is, and browsers then refuse it; Node.js refuses it under another name.
+    (folder / "pyodide" / "pyodide.mjs").replace(folder / "pyodide" / "pyodide.js")
 
 
 def pages(folder: Path) -> None:

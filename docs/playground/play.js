@@ -20,7 +20,7 @@ function begin() {
     calls.delete(data.id);
     if ("error" in data) reject(new Error(data.error)); else resolve(data.result);
   };
-  worker.onerror = (event) => state(`Python cannot be loaded: ${event.message || "this browser has no module workers"}`, true);
+  worker.onerror = (event) => state(`Python cannot be loaded: ${event.message || "its files are not served as scripts, or this browser has no module workers"}`, true);
 }
 const ask = (call, ...args) => new Promise((resolve, reject) => {
   calls.set(++number, {resolve, reject});

@@ -1,5 +1,5 @@
 // Python in a thread of its own: the page asks, this answers in order.
-import { loadPyodide } from "./pyodide/pyodide.mjs";
+import { loadPyodide } from "./pyodide/pyodide.js";
 
 const say = (text) => postMessage({progress: text});
 const bytes = async (file) => {

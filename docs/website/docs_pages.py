@@ -123,6 +123,8 @@ def _write(path: Path, to: Path) -> None:
     to.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".ipynb":
         text = notebook_text(json.loads(path.read_text(encoding="utf-8")))
+        # In lists it stands beside the page of the same title.
+        text = re.sub(r"^# (.+)$", r"# \1 (notebook)", text, count=1, flags=re.MULTILINE)
         to.with_suffix(".md").write_text(on_site(text, path), encoding="utf-8")
         shutil.copyfile(path, to)
     elif path.suffix != ".md":

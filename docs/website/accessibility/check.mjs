@@ -51,6 +51,12 @@ for (const theme of ["light", "dark"]) {
       try { await page.waitForSelector("#search-results li a", {timeout: 20000}); } catch { say("the search finds nothing"); }
     }
     for (const details of await page.$$("details.turning")) await details.evaluate((one) => { one.open = true; });
+    if (name === "playground/index.html") {
+      const ready = () => document.getElementById("answer").dataset.of || document.querySelector("#state.fault");
+      try { await page.waitForFunction(ready, null, {timeout: 120000}); } catch { say("the playground gives no answer"); }
+      const fault = await page.evaluate(() => document.querySelector("#state.fault")?.textContent);
+      if (fault) say(fault);
+    }
     await page.evaluate(AXE);
     for (const width of WIDTHS) {
       await page.setViewportSize({width, height: 900});
