@@ -214,6 +214,10 @@ def invoke(arguments: list[str]) -> int:
     except typer.Exit as end:
         return int(end.exit_code)
     except Exception as error:
+        if type(error) is InputError:
+            from robokin.cli.usage import by_option
+
+            raise InputError(by_option(str(error), arguments)) from None
         # Typer's errors know what is wrong with the usage; anything else is not for here.
         if not hasattr(error, "format_message"):
             raise

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 PROFILES = ("cubic", "quintic", "trapezoidal")
 
 
+ENDLESS = "inf"
+"""What is said of a joint that has no limit, beside others that have."""
+
+
 class TimingOptions(OptionGroup):
     """How long a path takes, and how joints speed up and slow down."""
 
@@ -108,12 +112,19 @@ def _joint_values(text: str | None, option: str, robot: Robot, units: Units) -> 
     import numpy as np
 
     from robokin.cli.arguments import parse_numbers, split_vector
+    from robokin.inverse.trajectories import FASTEST
     from robokin.model.joint_units import joint_factors
 
     if text is None:
         return None
     turns = [bool(turn) for turn in robot.revolute]
-    if len(split_vector(text)) == 1:
+    parts = split_vector(text)
+    endless = np.array([part.strip().lower() == ENDLESS for part in parts])
+    if len(parts) == robot.n > 1 and endless.any() and not endless.all():
+        text = ",".join("1" if no else part for no, part in zip(endless.tolist(), parts, strict=True))
+    else:
+        endless = np.zeros(robot.n, dtype=bool)
+    if len(parts) == 1:
         if len({*turns}) > 1:
             raise InputError(f"{option}: found one value for joints that turn and slide, expected {robot.n} values")
         values = np.full(robot.n, parse_numbers(text, option, turns[:1], units, "a value")[0])
@@ -121,4 +132,8 @@ def _joint_values(text: str | None, option: str, robot: Robot, units: Units) -> 
         values = parse_numbers(text, option, turns, units, "a value for each joint")
     if not (values > 0.0).all():
         raise InputError(f"{option}: found '{shown(text)}', expected values above 0")
-    return np.asarray(values * joint_factors(robot, units))
+    limits = values * joint_factors(robot, units)
+    if not ((limits >= 1.0 / FASTEST) & (limits <= FASTEST)).all():
+        bounds = f"{1.0 / FASTEST:g} to {FASTEST:g} (in rad or m)"
+        raise InputError(f"{option}: found '{shown(text)}', expected values from {bounds}")
+    return np.asarray(np.where(endless, np.inf, limits))

@@ -151,3 +151,11 @@ def surplus_sentence(extra: str, path: str) -> str:
     """A sentence for what follows the last argument that a command takes."""
     advice = ": a vector with spaces is one argument, in quotes" if extra[:1] in "0123456789.+-[" else ""
     return f"found '{shown(extra)}' at the end, expected nothing more{advice}; `{path} --help` shows the usage"
+
+
+def by_option(sentence: str, arguments: Sequence[str]) -> str:
+    """A sentence about an argument of Python, such as `drive: found …`, with the option of that name if it is given."""
+    name, colon, rest = sentence.partition(": ")
+    option = "--" + name.replace("_", "-")
+    given = any(word == option or word.startswith(option + "=") for word in arguments)
+    return f"{option}: {rest}" if colon and given else sentence

@@ -63,6 +63,9 @@ ITSELF = 1e-4
 STILL = 1e-9
 """Moves of joints below this [rad | size] are rounding."""
 
+ROUNDED = 1e-6
+"""Configurations [rad | size] that differ by less are one at a row of the path."""
+
 AROUND = (1e-4, 1e-3, 1e-2, 0.05, 0.3)
 """How far around a configuration [rad | size] descents start where steps from it do not arrive."""
 
@@ -114,7 +117,13 @@ class Follower:
                 self.ahead = found - q
             return end, found, ""
         self.begin(q)
-        return self.halved(q, before, end)
+        reached, found, why = self.halved(q, before, end)
+        if not why and not self.numeric:
+            # Steps end within rounding of poses; the list of solutions has the last digits.
+            exact = self.nearest(found, end)
+            if exact is not None and self.move(found, exact) <= ROUNDED:
+                found = exact
+        return reached, found, why
 
     def halved(self, q: Array, before: float, end: float) -> tuple[float, Array, str]:
         """The same by steps as short as they must be."""

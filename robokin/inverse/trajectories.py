@@ -40,6 +40,9 @@ PASSINGS = ("stop", "spline", "blend")
 LONGEST = 1e9
 """The longest duration [s]: thirty years."""
 
+FASTEST = 1e12
+"""The greatest limit of velocity and acceleration [rad/s | m/s, per s²], and its inverse the least."""
+
 LONGER = 8
 """How often a path with rows of a rate is made longer at most: each time rows are at other places."""
 
@@ -109,7 +112,7 @@ def trajectory(
         t = t if len(t) else np.zeros(1)
     q, velocity, acceleration = curve.at(t)
     if len(q) and fraction == 1.0:
-        q[-1] = way[-1]  # to the last digit
+        q[-1], velocity[-1] = way[-1], 0.0  # to the last digit
     return _with_rows(robot, t, curve.duration, (q, velocity, acceleration), fraction, event, count)
 
 
@@ -264,12 +267,17 @@ def time_of_parts(profile: Profile, s: Array) -> Array:
 
 
 def motion_limits(robot: Robot, velocity: ArrayLike | None, acceleration: ArrayLike | None) -> MotionLimits:
-    """Limits (n,), or one for all joints [rad/s | m/s, per s²]; None for none. Raises InputError for none above 0."""
+    """Limits (n,), or one for all joints [rad/s | m/s, per s²]; None for none. Raises InputError for none above 0.
+
+    A joint whose limit is infinite has none.
+    """
     values = []
     for name, given in (("max_velocity", velocity), ("max_acceleration", acceleration)):
         what = f"a positive number, or {robot.n} of them"
         array = np.full(robot.n, np.inf) if given is None else expect_numbers(given, name, what)
-        if array.shape not in ((), (robot.n,)) or not (array > 0.0).all():
+        plain = (array >= 1.0 / FASTEST) & (array <= FASTEST) | np.isposinf(array)
+        if array.shape not in ((), (robot.n,)) or not plain.all():
+            what += f", from {1.0 / FASTEST:g} to {FASTEST:g} or infinite"
             raise InputError(f"{name}: found {np.array2string(array)}, expected {what}")
         values.append(np.broadcast_to(array, (robot.n,)).copy())
     return MotionLimits(*values)

@@ -118,7 +118,7 @@ def _roles(assembly: Assembly, drive: str | None) -> tuple[int, Flags]:
     names = [joint.name for joint in joints]
     if drive is not None and drive not in names:
         hint = did_you_mean(drive, names) or f", expected one of {', '.join(names[:12])}"
-        raise InputError(f"found the unknown joint '{shown(drive)}'{hint}")
+        raise InputError(f"drive: found the unknown joint '{shown(drive)}'{hint}")
     actuated = [i for i, joint in enumerate(joints) if joint.actuated]
     moving = [i for i, joint in enumerate(joints) if joint.freedoms]
     if not moving:

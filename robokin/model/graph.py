@@ -234,12 +234,12 @@ class Graph(Brief):
         tips |= {one.name: (one.link, one.tool) for one in self.tips}
         # The tips come first: they are what is asked for most, and a message has no room for all links.
         named = [*(one.name for one in self.tips), *(name for name in self.links)]
-        for name, known in ((root, [*self.links]), (tip, [*dict.fromkeys(named)])):
+        for what, name, known in (("root", root, [*self.links]), ("tip", tip, [*dict.fromkeys(named)])):
             if name not in known:
                 more = ", …" if len(known) > MOST_LISTED else ""
                 listed = ", ".join(shown(one) for one in known[:MOST_LISTED])
                 hint = did_you_mean(name, known) or f", expected one of {listed}{more}"
-                raise InputError(f"found the unknown link '{shown(name)}'{hint}")
+                raise InputError(f"{what}: found the unknown link '{shown(name)}'{hint}")
         first, (last, tool) = self.links.index(root), tips[tip]
         numbers: list[int] = []
         while last != first:

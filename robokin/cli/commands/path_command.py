@@ -82,7 +82,8 @@ def command(
 
     Without options about time t runs from 0 to 1, at rest at both ends, by a quintic. With --duration or --max-velocity
     t is in seconds, and velocities and accelerations of the joints are written too. All joints begin and end each piece
-    together; at each point between they stop, unless --spline or --blend says how to pass.
+    together; at each point between they stop, unless --spline or --blend says how to pass. Lines and arcs stop too,
+    unless --blend or --blend-radius rounds their corners: by how much each point is missed is said.
 
     From a pose (--from with a transform) the best branch over the whole path is taken: that of which the joint that
     travels farthest travels least. Where a path breaks, it is said which other start gets to the end.
