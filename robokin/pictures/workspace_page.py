@@ -19,7 +19,7 @@ from robokin.pictures.picture import CLOSED, Cloud, GridTable, Panel, Picture, P
 DIGITS = 5
 """Significant digits of a place in a plane picture: far finer than a screen."""
 
-INCLUDE = re.compile(r"@INCLUDE ([a-z]+\.(?:js|css))@")
+INCLUDE = re.compile(r"@INCLUDE ([a-z]+\.(?:js|css|html))@")
 """Where a page takes in a script or a style that it shares with others."""
 
 COMMENT = re.compile(r"^ *// .*\n", re.MULTILINE)
