@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import islice
 
 from robokin.errors import InputError
 from robokin.formats.pasted_headings import TABLE, heading_of
@@ -34,6 +35,15 @@ LINK_COLUMNS = ("theta", "d", "a", "alpha", "sigma", "offset")
 MIN_NUMBERS = 4
 """Numbers in a row of a matrix at least."""
 
+MAX_NAME = 120
+"""Characters before a link in which the name is looked for that it is given."""
+
+MAX_VALUE = 200
+"""Characters of a value in a dictionary."""
+
+MAX_RECORDS = 500
+"""Dictionaries that are looked at; a program of an arm has a dozen."""
+
 MAX_CALL = 2000
 """Characters of the arguments of one link."""
 
@@ -56,8 +66,9 @@ def code_rows(text: str) -> tuple[list[PastedRow], list[str]] | None:
 
 def _indexed(text: str) -> str:
     """A program whose lists' entries are names: the joints' variables from q1 on, others as they are counted."""
-    found = INDEXED.findall(text)
-    first = {name: min(int(index) for called, index in found if called == name) for name, _ in found}
+    first: dict[str, int] = {}
+    for name, index in INDEXED.findall(text):
+        first[name] = min(int(index), first.get(name, int(index)))
 
     def named(entry: re.Match[str]) -> str:
         if entry[1].lower() in CALLED_Q:
@@ -78,7 +89,7 @@ def _links(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
             raise InputError(f"line {line}: found a link without numbers, expected its theta, d, a and alpha")
         if told.get("flip", "False") not in ("False", "false", "0"):
             raise InputError(f"line {line}: found a link with flip, expected links that turn the way of their axis")
-        if (owner := ASSIGNED_TO.search(bare[: match.start()])) and owner[1] in limits:
+        if (owner := ASSIGNED_TO.search(bare[max(0, match.start() - MAX_NAME) : match.start()])) and owner[1] in limits:
             told.setdefault("qlim", limits[owner[1]])
         slides = _slides(match, told, words, bool(listed), line)
         free = "d" if slides else "theta"  # whatever number stands there
@@ -162,7 +173,8 @@ def _arguments(text: str) -> tuple[dict[str, str], set[str]]:
 def _records(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
     """The rows of `{"d": 0.4, "a": 0, "alpha": pi/2}` and `Joint(d=0.4, a=0, alpha=pi/2)`, each with the same names."""
     found: list[tuple[int, dict[str, str]]] = []
-    for match in RECORD.finditer(bare):
+    opened = (match for match in RECORD.finditer(bare) if "alpha" in bare[match.end() : match.end() + MAX_VALUE])
+    for match in islice(opened, MAX_RECORDS):
         parts = _parted(bare[match.end() : match.end() + MAX_CALL], ",")
         fields = [field for part in parts if (field := FIELD.fullmatch(part))]
         told = {field[1]: SYMBOL.sub(r"\1", _plain(field[2])) for field in fields}
@@ -190,7 +202,7 @@ def _entries(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
         return [], []
     for match in matches:
         column, value = found[{"al": "alpha", "q": "theta", "th": "theta"}.get(match[1], match[1])], match.end()
-        cell = _plain(_parted(bare[value : value + MAX_CALL], ",")[0].split("\n")[0])
+        cell = _plain(_parted(bare[value : value + MAX_VALUE], ",")[0].split("\n")[0])
         if column.setdefault(int(match[2]), cell) != cell:
             raise InputError(f"line {_line(bare, value)}: found {match[1]}{match[2]} twice, expected one value")
         if column is found["d"]:

@@ -10,13 +10,13 @@ from robokin.errors import InputError
 TAG = re.compile(r"</?(?:su[bp]|t[drh]|table|thead|tbody|br|b|i|u|em|strong|span|code|p|div|font|center|math)\b", re.I)
 SUBSCRIPT = re.compile(r"<sub\b[^<>]*>\s*([^<>]{0,40}?)\s*</sub>", re.IGNORECASE)
 RAISED = re.compile(r"<sup\b[^<>]*>\s*([^<>]{0,40}?)\s*</sup>", re.IGNORECASE)
-ROW = re.compile(r"<tr\b[^<>]*>(.{0,20000}?)(?=</tr\s*>|<tr\b|</table|</tbody|$)", re.IGNORECASE | re.DOTALL)
-CELL = re.compile(r"<t[dh]\b([^<>]*)>(.{0,4000}?)(?=</t[dh]\s*>|<t[dh]\b|$)", re.IGNORECASE | re.DOTALL)
+ROW = re.compile(r"<tr\b[^<>]*>(.{0,4000}?)(?=</tr\s*>|<tr\b|</table|</tbody|$)", re.IGNORECASE | re.DOTALL)
+CELL = re.compile(r"<t[dh]\b([^<>]*)>(.{0,1000}?)(?=</t[dh]\s*>|<t[dh]\b|$)", re.IGNORECASE | re.DOTALL)
 ENTITY = re.compile(r"&#?\w{1,31};")
 OTHER = re.compile(r"</?[A-Za-z][^<>]{0,400}>")
 TILDED = re.compile(r"(?<=\w)~([\w+\-]{1,5})~(?!\w)")
 WIKI = re.compile(r"(?m)^\s*\{\|")
-HIDDEN = re.compile(r"<!--|-->|<(script|style)\b.{0,100000}?</\1\s*>", re.IGNORECASE | re.DOTALL)
+HIDDEN = re.compile(r"<!--|-->|<(script|style)\b.{0,2000}?</\1\s*>", re.IGNORECASE | re.DOTALL)
 
 
 def without_markup(text: str) -> str:

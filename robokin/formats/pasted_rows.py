@@ -231,7 +231,10 @@ def _parts(line: str, separator: str) -> tuple[str, ...]:
     elif separator == "\t":
         cells = line.split("\t")
     else:
-        cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+        try:
+            cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+        except csv.Error:  # a field that no table has
+            cells = [line]
     return tuple(cell.strip() for cell in cells)
 
 

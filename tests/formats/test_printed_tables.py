@@ -416,6 +416,13 @@ def test_cells_on_lines_of_their_own_are_a_table_only_where_rows_are_numbered():
             of_table(wrong, Wishes())
 
 
+@pytest.mark.parametrize("part", ["<script>", "<tr><td>", "{", "f(alpha=", "q[1]", "x" * 199, "Link('d',1)", "~a~"])
+def test_a_text_of_nothing_else_is_refused(part):
+    """However long: none of these ends in more than a sentence, or in a search without an end."""
+    with pytest.raises(InputError):
+        of_table(part * (190_000 // len(part)), Wishes())
+
+
 def test_a_matrix_may_break_its_rows_where_it_likes():
     for text in ("m = [q1 0 0.1 0\n q2 0 0.2 0;\n q3 0 0.3 0];", "m = [[q1,0,0.1,0], [q2,0,0.2,0],\n\n[q3,0,0.3,0]]"):
         assert of_table("% theta d a alpha\n" + text, Wishes()).types == "RRR"
