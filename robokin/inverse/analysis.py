@@ -37,7 +37,6 @@ from robokin.kernel.frames import frames, pose
 from robokin.kernel.ranks import RANK
 from robokin.kernel.residual import error_and_jacobian
 from robokin.model import Robot
-from robokin.spatial import transform
 
 Task = Literal["pose", "approach", "position"]
 
@@ -100,11 +99,12 @@ class Analysis:
 
 def analysis_of(robot: Robot, task: Task = "pose") -> Analysis:
     """The analysis of a robot for a task, made when it is first asked for."""
-    return _analysis(robot, task)
+    return known_analysis(robot, task)
 
 
 @fact
-def _analysis(robot: Robot, task: Task) -> Analysis:
+def known_analysis(robot: Robot, task: Task) -> Analysis:
+    """The same, with the task by its place."""
     return analyse(chain_of(robot), task)
 
 
@@ -184,10 +184,19 @@ def _dimension(chain: Chain, size: float, first: int, last: int) -> int:
     return int(np.max(np.sum(values > RANK * values[:, :1], axis=1))) if last > first else 0
 
 
-def _generic_jacobians(chain: Chain, size: float) -> Array:
-    """Jacobians (3, 6, n), lengths in sizes, at arbitrary configurations."""
-    q = 2.0 * arbitrary(11, 3, chain.n) * np.where(chain.revolute, 1.0, size)
-    target = np.broadcast_to(transform(np.eye(3), np.zeros(3)), (3, 4, 4))
+def moves_in_all_directions(chain: Chain, size: float) -> bool:
+    """Whether a chain can move its tool in all six directions."""
+    J = _generic_jacobians(chain, size, 1)[0]
+    # |det J| is the least singular value times five others, whose product is at most (|J|² / 5)^(5/2).
+    if abs(float(np.linalg.det(J))) > 2.0 * RANK * float(np.sum(J * J)) ** 3 / 5.0**2.5:
+        return True
+    return _dimension(chain, size, 0, chain.n) == 6
+
+
+def _generic_jacobians(chain: Chain, size: float, count: int = 3) -> Array:
+    """Jacobians (count, 6, n), lengths in sizes, at arbitrary configurations."""
+    q = 2.0 * arbitrary(11, 3, chain.n)[:count] * np.where(chain.revolute, 1.0, size)
+    target = np.tile(np.eye(4), (count, 1, 1))
     return error_and_jacobian(chain, np.array(target), q, size)[1]
 
 

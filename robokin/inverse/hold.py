@@ -16,19 +16,21 @@ import math
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache, cached_property, partial
 
 import numpy as np
 
 from robokin.arrays import Array, Index
 from robokin.errors import InputError
-from robokin.inverse.analysis import analysis_of
+from robokin.inverse.analysis import analysis_of, known_analysis
 from robokin.inverse.held_drive import drive_left
+from robokin.inverse.held_forms import HeldForms, held_forms
 from robokin.inverse.later_fields import changed, nearest_unknown, with_later_nearest
+from robokin.inverse.one_target_arm import OneTargetArm, one_target_arm
 from robokin.inverse.solution_names import branch_names
 from robokin.inverse.solutions import Arc, BatchResult, Family, Question, Result, Solution, named_later
-from robokin.kernel.chain import row_standing
-from robokin.kernel.facts import fact
+from robokin.kernel.chain import chain_of, row_standing
+from robokin.kernel.facts import fact, tell
 from robokin.model import CoupledRobot, Robot
 from robokin.model.robot import LIMIT_TOLERANCE
 
@@ -42,15 +44,40 @@ class HeldArm:
     """A robot's table with some joints held.
 
     n: joints of the whole robot; joints: (h,) the held ones, from 0; values: (h,) theirs [rad | m]; inside: whether
-    these are within the limits; part: the arm of the others; free: (n - h,) which these are, from 0.
+    these are within the limits; free: (n - h,) the others, from 0; made: gives the arm of these; forms: how it is known
+    for any values.
     """
 
     n: int
     joints: Index
     values: Array
     inside: bool
-    part: Robot
     free: Index
+    made: Callable[[], Robot]
+    forms: HeldForms | None = None
+
+    @cached_property
+    def part(self) -> Robot:
+        """The arm of the joints that are not held."""
+        part = self.made()
+        known: OneTargetArm | None = self._known
+        if known is not None:
+            tell(chain_of, known.analysis.chain, part)
+            tell(known_analysis, known.analysis, part, "pose")
+            tell(one_target_arm, self._known, part)
+        return part
+
+    @property
+    def one(self) -> OneTargetArm | None:
+        """What answers one pose for the part; None where blocks do."""
+        return one_target_arm(self.part) if self._known is None else self._known
+
+    @cached_property
+    def _known(self) -> OneTargetArm | None:
+        return None if self.forms is None else self.forms.arm(self.values.tolist(), self._part)
+
+    def _part(self) -> Robot:
+        return self.part
 
     def own(self, q: Array) -> Array:
         """Those of joint values (..., n) that are not held, (..., n - h)."""
@@ -88,6 +115,21 @@ def held_arm(robot: Robot, hold: Mapping[int, float]) -> HeldArm:
 def _held_arms(robot: Robot) -> OrderedDict[tuple[tuple[int, float], ...], HeldArm]:
     """The arms that were last asked for, none at first, by the joints and their values."""
     return OrderedDict()
+
+
+def _forms(robot: Robot, joints: tuple[int, ...]) -> HeldForms | None:
+    """How the arms that are left are known, from the second one on: for a single value it does not pay."""
+    asked = _asked(robot)
+    if joints in asked:
+        return held_forms(robot, joints)
+    asked.add(joints)
+    return None
+
+
+@fact
+def _asked(robot: Robot) -> set[tuple[int, ...]]:
+    """The joints that were held so far."""
+    return set()
 
 
 def check_held_limits(robot: Robot, arm: HeldArm) -> None:
@@ -167,13 +209,22 @@ def _checked(robot: Robot, hold: Mapping[int, float]) -> dict[int, float]:
 
 
 def _held(robot: Robot, hold: dict[int, float]) -> HeldArm:
-    name = f"{robot.name} with {', '.join(f'q{i + 1}' for i in hold)} held"
-    joints = np.array(list(hold), dtype=np.intp)
-    free = np.setdiff1d(np.arange(robot.n), joints).astype(np.intp)
+    joints, values = np.array(list(hold), dtype=np.intp), np.array(list(hold.values()))
+    free = np.array([i for i in range(robot.n) if i not in hold], dtype=np.intp)
     inside = all(held_inside(robot, joint, value) for joint, value in hold.items())
     if isinstance(robot, CoupledRobot):
-        part, left = drive_left(robot, hold, name)
-        return HeldArm(robot.n, joints, np.array(list(hold.values())), inside and left, part, free)
+        part, left = drive_left(robot, hold, _name(robot, hold))
+        return HeldArm(robot.n, joints, values, inside and left, free, lambda: part)
+    forms = _forms(robot, tuple(hold))
+    return HeldArm(robot.n, joints, values, inside, free, partial(_part_of, robot, hold), forms)
+
+
+def _name(robot: Robot, hold: dict[int, float]) -> str:
+    return f"{robot.name} with {', '.join(f'q{i + 1}' for i in hold)} held"
+
+
+def _part_of(robot: Robot, hold: dict[int, float]) -> Robot:
+    """The arm of the joints that are not held."""
     rows, number = [], 0
     for row in robot.rows:
         if row.moves:
@@ -181,8 +232,7 @@ def _held(robot: Robot, hold: dict[int, float]) -> HeldArm:
             number += 1
         else:
             rows.append(row)
-    part = replace(robot, name=name, rows=tuple(rows), poses={}, texts=())
-    return HeldArm(robot.n, joints, np.array(list(hold.values())), inside, part, free)
+    return replace(robot, name=_name(robot, hold), rows=tuple(rows), poses={}, texts=())
 
 
 def _whole_result(arm: HeldArm, result: Result, named: Robot | None) -> Result:

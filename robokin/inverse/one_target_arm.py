@@ -8,6 +8,7 @@ Degenerate case. None for other arms; no handle where there is no native kernel,
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,6 @@ from robokin.inverse.closed_form.form_tape import FormTape, form_tape
 from robokin.inverse.closed_form.straight_forms import StraightForm, compiled_form, straight_source
 from robokin.inverse.elimination.loop import Loop
 from robokin.inverse.elimination.native_elimination import native_elimination
-from robokin.inverse.full_turns import turning
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import program_to_tool
 from robokin.kernel.native_kernel import handle, native
@@ -45,13 +45,13 @@ class Bounds:
 class OneTargetArm:
     """What is known of an arm of six turning joints.
 
-    form: the code of its closed form, None where elimination solves it; offsets: (6) [rad]; size [m]; bounds: the
-    limits of joints that have some; turning: joint, low and high of those that may stand a full turn on within their
-    limits; kernel: what the native kernel knows the closed form and the limits by, or None; elimination: what it knows
-    the elimination by.
+    whose: gives the robot; form: the code of its closed form, None where elimination solves it; offsets: (6) [rad];
+    size [m]; bounds: the limits of joints that have some; turning: joint, low and high of those that may stand a full
+    turn on within their limits; kernel: what the native kernel knows the closed form and the limits by, or None;
+    elimination: what it knows the elimination by.
     """
 
-    robot: Robot
+    whose: Callable[[], Robot]
     analysis: Analysis
     form: StraightForm | None
     residuals: StraightResiduals
@@ -62,6 +62,11 @@ class OneTargetArm:
     turning: tuple[tuple[int, float, float], ...]
     kernel: object | None
     elimination: object | None
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that is this arm."""
+        return self.whose()
 
 
 @fact
@@ -77,32 +82,38 @@ def one_target_arm(robot: Robot) -> OneTargetArm | None:
     source, residuals = straight_source(analysis.solver), straight_residuals(program_to_tool(chain))
     if residuals is None or analysis.six.virtual or analysis.number is None or not (general or source is not None):
         return None
-    low, high = tolerated(robot.limits)
+    bounds, whole = limits_of(robot.limits)
+    offsets = tuple(chain.offsets.tolist())
+    form = None if source is None else compiled_form(source)
+    loop, known, elimination = analysis.loop, None, None
+    if source is not None:
+        known = kernel_of(analysis, form_tape(source), bounds, whole)
+    else:
+        eliminated = native_elimination(analysis.solver.first, loop, chain, analysis.number)
+        if eliminated is not None:
+            known, elimination = kernel_of(analysis, NO_TAPE, bounds, whole), eliminated.known
+    return OneTargetArm(
+        lambda: robot, analysis, form, residuals, loop, offsets, analysis.size, bounds, whole, known, elimination
+    )
+
+
+def limits_of(limits: Array) -> tuple[tuple[Bounds, ...], tuple[tuple[int, float, float], ...]]:
+    """Limits (6, 2) [rad] of turning joints as `OneTargetArm` has them: bounds, turning."""
+    low, high = tolerated(limits)
     bounds = tuple(
         Bounds(i, float(low[i]), float(high[i]), bool(low[i] < -np.pi or high[i] > np.pi))
-        for i in np.flatnonzero(np.isfinite(robot.limits).any(axis=1)).tolist()
+        for i in np.flatnonzero(np.isfinite(limits).any(axis=1)).tolist()
     )
-    wide = [(i, *robot.limits[i].tolist()) for i in turning(robot)]
+    wide = [(i, *limits[i].tolist()) for i in np.flatnonzero(np.isfinite(limits).all(axis=1)).tolist()]
     whole = tuple(
         (i, low - LIMIT_TOLERANCE, high + LIMIT_TOLERANCE)
         for i, low, high in wide
         if high - low + 4.0 * LIMIT_TOLERANCE >= TURN
     )
-    offsets = tuple(chain.offsets.tolist())
-    form = None if source is None else compiled_form(source)
-    loop, known, elimination = analysis.loop, None, None
-    if source is not None:
-        known = _kernel(analysis, form_tape(source), bounds, whole)
-    else:
-        eliminated = native_elimination(analysis.solver.first, loop, chain, analysis.number)
-        if eliminated is not None:
-            known, elimination = _kernel(analysis, NO_TAPE, bounds, whole), eliminated.known
-    return OneTargetArm(
-        robot, analysis, form, residuals, loop, offsets, analysis.size, bounds, whole, known, elimination
-    )
+    return bounds, whole
 
 
-def _kernel(
+def kernel_of(
     analysis: Analysis, tape: FormTape | None, bounds: tuple[Bounds, ...], whole: tuple[tuple[int, float, float], ...]
 ) -> object | None:
     """What the native kernel knows a closed form by, for the limits of an arm; None where it does not."""

@@ -122,7 +122,7 @@ def _one_target(
         if limits:
             check_held_limits(robot, part)
         wish = own_near(part, wish)
-    arm = one_target_arm(robot if part is None else part.part)
+    arm = one_target_arm(robot) if part is None else part.one
     answer = None if arm is None else solve_one(arm, T, limits, most, wish)
     return None if answer is None else UnmadeResult(partial(_made, robot, part, answer, dict(hold or {})))
 

@@ -23,6 +23,7 @@ accuracy of robot manipulators, J. Robotic Systems 2(4), 1985.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -52,14 +53,13 @@ def axis_path(constants: Array, revolute: Flags, offsets: Array, start: Array) -
     first, last = float(start[2]), float(tip[2])
     # For each place where the arm may be on an axis: what it has cost to come there, and the places before.
     ways: list[tuple[float, float, tuple[float, ...]]] = [(0.0, first, (first,))]
-    for L, leaves in zip(links[1:], _leaves(links[1:], first, last), strict=True):
+    axes = [_Axis(*L[:3, 3].tolist(), *L[:3, 2].tolist()) for L in links[1:]]
+    for axis, leaves in zip(axes, _leaves(axes, first, last), strict=True):
         onwards = []
         for leave in leaves:
-            arrive = float(L[:3, 2] @ ([0.0, 0.0, leave] - L[:3, 3]))
-            point = L[:3, 3] + arrive * L[:3, 2]
-            cost, places = min(
-                (cost + math.hypot(point[0], point[1], point[2] - at), places) for cost, at, places in ways
-            )
+            arrive = axis.foot(leave)
+            x, y, z = axis.t_x + arrive * axis.z_x, axis.t_y + arrive * axis.z_y, axis.t_z + arrive * axis.z_z
+            cost, places = min([(cost + math.hypot(x, y, z - at), places) for cost, at, places in ways])
             onwards.append((cost, arrive, (*places, arrive)))
         ways = onwards
     cost, places = min((cost + math.hypot(tip[0], tip[1], last - at), places) for cost, at, places in ways)
@@ -84,37 +84,52 @@ def _revolute_links(
     for turns, offset, C in zip(revolute, offsets, constants[1:], strict=True):
         if turns:
             links.append(step)
-            step = np.eye(4)
+            step = C
         else:
+            step = step.copy()
             step[:3, 3] += step[:3, 2] * offset
-        step = step @ C
+            step = step @ C
     if links:
         start = links[0][:3, :3].T @ (start - links[0][:3, 3])
     return start, links, step[:3, 3]
 
 
-def _leaves(links: list[Array], first: float, last: float) -> list[set[float]]:
+class _Axis(NamedTuple):
+    """The next axis as it is seen from one: a point t on it and its direction z."""
+
+    t_x: float
+    t_y: float
+    t_z: float
+    z_x: float
+    z_y: float
+    z_z: float
+
+    def foot(self, at: float) -> float:
+        """Where on the next axis what is nearest to z = `at` is."""
+        return -self.z_x * self.t_x - self.z_y * self.t_y + self.z_z * (at - self.t_z)
+
+
+def _leaves(axes: list[_Axis], first: float, last: float) -> list[set[float]]:
     """Where the arm may leave each axis but the last, z in its frame: (one or two places).
 
     first: where it begins on the first axis; last: where it ends on the last one.
     """
     entries, exits = [], []
     at = first
-    for L in links:
-        entries.append(_passage(L, at))
-        at = float(L[:3, 2] @ ([0.0, 0.0, entries[-1]] - L[:3, 3]))
+    for axis in axes:
+        entries.append(_passage(axis, at))
+        at = axis.foot(entries[-1])
     at = last
-    for L in reversed(links):
-        at = _passage(L, float(L[2, 3] + at * L[2, 2]))
+    for axis in reversed(axes):
+        at = _passage(axis, axis.t_z + at * axis.z_z)
         exits.append(at)
     return [{entry, end} for entry, end in zip(entries, exits[::-1], strict=True)]
 
 
-def _passage(L: Array, at: float) -> float:
-    """Where the arm leaves an axis for the next one, the z axis of L (4, 4): at z = `at` or at the foot."""
-    t, z = L[:3, 3], L[:3, 2]
-    sine = math.hypot(z[0], z[1])
+def _passage(axis: _Axis, at: float) -> float:
+    """Where the arm leaves an axis for the next one: at z = `at` or at the foot."""
+    sine = math.hypot(axis.z_x, axis.z_y)
     if sine <= AS_PARALLEL:
         return at
-    foot = float(t[2] - (t[:2] @ z[:2]) * z[2] / sine**2)
+    foot = axis.t_z - (axis.t_x * axis.z_x + axis.t_y * axis.z_y) * axis.z_z / sine**2
     return at + min((sine - AS_PARALLEL) / (ASKEW - AS_PARALLEL), 1.0) * (foot - at)

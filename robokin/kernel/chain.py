@@ -24,7 +24,8 @@ from robokin.kernel.arm_size import axis_path
 from robokin.kernel.facts import fact
 from robokin.model import Joint, JointType, Robot, expect_uncoupled
 from robokin.model.robot import row_constants
-from robokin.spatial import exact, invert, rotation_transform, translation_transform, z_to
+from robokin.spatial import exact, invert, translation_transform, z_to
+from robokin.spatial.rotations import cos_sin
 
 FAR = 2.0
 """Frames that are farther from each other, in the arm's size and added up, than this are moved along their axes to the
@@ -134,5 +135,9 @@ def row_standing(row: Joint, value: float, convention: str) -> Joint:
 
 def _standing(turns: bool, at: float) -> Array:
     """J (4, 4) of a joint that stands at a value [rad | m], exact at right angles."""
-    z = np.array([0.0, 0.0, 1.0])
-    return rotation_transform(z, at) if turns else translation_transform(at * z)
+    if not turns:
+        return translation_transform(np.array([0.0, 0.0, at]))
+    c, s = cos_sin(at)
+    J = np.eye(4)
+    J[0, 0], J[0, 1], J[1, 0], J[1, 1] = c, -s, s, c
+    return J

@@ -85,8 +85,9 @@ class Term:
 
 def written(entry: Any) -> str:
     """A term's name, or a number with all its digits, negative ones in brackets."""
-    if isinstance(entry, Term):
-        return entry.name
+    name: str | None = getattr(entry, "name", None)  # of a term, or of a number that is traced
+    if name is not None:
+        return name
     number = float(entry)
     return repr(number) if math.copysign(1.0, number) > 0.0 else f"({number!r})"
 

@@ -20,6 +20,7 @@ from robokin.kernel.spared_products import plus as plus
 from robokin.kernel.spared_products import times as times
 from robokin.kernel.spared_products import turned as turned
 from robokin.kernel.spared_products import turned_back as turned_back
+from robokin.kernel.traced_numbers import Traced
 
 Entry = float | Array
 Vector = Sequence[Entry]
@@ -41,7 +42,7 @@ class EntryFrame:
 
 def constant(T: Array) -> EntryFrame:
     """A transform (4, 4) that is the same for every target."""
-    rows = [[cleaned(float(value)) for value in row] for row in T[:3]]
+    rows = [[cleaned(value) for value in row] for row in T[:3].tolist()]
     return EntryFrame([row[:3] for row in rows], [row[3] for row in rows])
 
 
@@ -62,8 +63,10 @@ def _taken(entry: Entry, index: Index) -> Entry:
 
 def cleaned(value: float) -> float:
     """value, or 0 or ±1 where it is that but for rounding."""
-    whole = float(round(value)) if abs(value) < 1.5 else value
-    return whole + 0.0 if abs(value - whole) < NOTHING else value
+    size = abs(value)
+    if size < NOTHING:
+        return 0.0
+    return math.copysign(1.0, value) if abs(size - 1.0) < NOTHING else value
 
 
 def dot(u: Vector, v: Vector) -> Entry:
@@ -108,7 +111,8 @@ def multiplied(M: Matrix, N: Matrix) -> list[Vector]:
 def root(value: Entry) -> Entry:
     """The square root; 0 of what is negative by rounding."""
     if isinstance(value, float):
-        return math.sqrt(max(value, 0.0))
+        positive = max(value, 0.0)
+        return positive.root() if isinstance(positive, Traced) else math.sqrt(positive)
     return np.sqrt(np.maximum(value, 0.0))
 
 

@@ -6,7 +6,7 @@ e_rest - ratio e_main = 0 is free of x, and n · x = e_main / size is left.
 
 from __future__ import annotations
 
-import math
+from robokin.kernel.entries import root
 
 RANK = 1e-5
 """A matrix whose lesser row, but for its part along the greater, is shorter than this has rank 1, and one
@@ -18,7 +18,7 @@ class Pair:
     """The matrix N: rows of two numbers."""
 
     def __init__(self, rows: list[tuple[float, float]]) -> None:
-        sizes = [math.hypot(*row) for row in rows]
+        sizes = [root(row[0] * row[0] + row[1] * row[1]) for row in rows]
         self.main = 0 if sizes[0] >= sizes[1] else 1
         self.rest = 1 - self.main
         self.size = sizes[self.main]
@@ -28,7 +28,7 @@ class Pair:
         (a, b), (c, d) = rows
         determinant = a * d - b * c
         self.n = rows[self.main][0] / self.size, rows[self.main][1] / self.size
-        self.ratio = (a * c + b * d) / self.size**2
+        self.ratio = (a * c + b * d) / (self.size * self.size)
         self.rank = 2 if abs(determinant) >= RANK * self.size else 1
         if self.rank == 2:
             self.inverse = [[d / determinant, -b / determinant], [-c / determinant, a / determinant]]

@@ -22,6 +22,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.closed_form.gather import LEVER
+from robokin.kernel.traced_numbers import NAME
 
 OPERATIONS = (
     "added", "less", "times", "over", "minus", "root", "magnitude", "signed", "clamped", "chosen", "greater", "angle",
@@ -50,7 +51,8 @@ class FormTape:
 
     steps: (k, 11) the operation, and first slot and level of its result and of four operands; constants: (c,), which
     the slots after the inputs hold; leaves: (r, 6, 2) where the joint values [rad] of the roots are; levels: how many
-    loops over two roots there are; slots: how many slots there are.
+    loops over two roots there are; slots: how many slots there are; names: of constants that have a name instead of a
+    number, with their places.
     """
 
     steps: Array
@@ -58,6 +60,7 @@ class FormTape:
     leaves: Array
     levels: int
     slots: int
+    names: tuple[tuple[int, str], ...] = ()
 
 
 class _UnknownError(Exception):
@@ -93,16 +96,20 @@ class _SourceReader:
 
     def constant(self, value: float) -> int:
         """The register of a number; -0 is another one than 0."""
-        if repr(value) not in self.constants:
+        return self.unvaried(repr(value))
+
+    def unvaried(self, text: str) -> int:
+        """The register of a number or of one that has a name."""
+        if text not in self.constants:
             self.levels.append(0)
-            self.constants[repr(value)] = len(self.levels) - 1
-        return self.constants[repr(value)]
+            self.constants[text] = len(self.levels) - 1
+        return self.constants[text]
 
     def value(self, node: ast.expr) -> int:
         """The register of an expression."""
         match node:
             case ast.Name(id=name):
-                return self.names[name]
+                return self.unvaried(name) if NAME.fullmatch(name) else self.names[name]
             case ast.Constant(value=float(number)):
                 return self.constant(number)
             case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=float(number))):
@@ -246,5 +253,8 @@ def _placed(reader: _SourceReader) -> FormTape:
             if last.get(one, k) == k:
                 free.setdefault(reader.levels[one], []).append(slots[one])
     leaves = [[(slots[one], reader.levels[one]) for one in leaf] for leaf in reader.leaves]
-    constants = np.array([float(number) for number in reader.constants])
-    return FormTape(np.array(steps, dtype=np.float64), constants, np.array(leaves, dtype=np.float64), reader.level, end)
+    names = tuple((k, text) for k, text in enumerate(reader.constants) if NAME.fullmatch(text))
+    named = {text for _, text in names}
+    constants = np.array([np.nan if text in named else float(text) for text in reader.constants])
+    table, ends = np.array(steps, dtype=np.float64), np.array(leaves, dtype=np.float64)
+    return FormTape(table, constants, ends, reader.level, end, names)

@@ -8,6 +8,7 @@ kinds have the same methods, so that an equation is written once for both.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from robokin.inverse.closed_form.trigonometry import (
     turned,
     turned_back,
 )
-from robokin.kernel.entries import Entry, Vector, angle, dot, minus, plus, times
+from robokin.kernel.entries import Entry, Vector, angle, dot, minus, plus, root, times
 
 Form = Sequence[Entry]
 Motion = tuple[Entry, ...]
@@ -211,19 +212,21 @@ def parallel_gradient(forms: Sequence[Form]) -> tuple[float, float] | None:
 
     None where they do not for every target, or depend on nothing.
     """
-    gradients = np.array([_gradient(form) for form in forms])
-    longest = gradients[np.argmax(np.linalg.norm(gradients, axis=1))]
-    length = float(np.linalg.norm(longest))
+    gradients: list[tuple[float, float]] = []
+    longest, length = (0.0, 0.0), 0.0
+    for form in forms:
+        c, s = form[1], form[2]
+        if not (isinstance(c, float) and isinstance(s, float)):
+            return None
+        gradients.append((c, s))
+        size = cast(float, root(c * c + s * s))
+        if size > length:
+            longest, length = (c, s), size
     if not length > VANISHES:
         return None
-    n = longest / length
-    across = gradients @ np.array([-n[1], n[0]])
-    return (float(n[0]), float(n[1])) if np.max(np.abs(across)) < VANISHES else None
-
-
-def _gradient(form: Form) -> tuple[float, float]:
-    c, s = form[1], form[2]
-    return (c, s) if isinstance(c, float) and isinstance(s, float) else (np.nan, np.nan)
+    n_c, n_s = longest[0] / length, longest[1] / length
+    across = [n_c * s - n_s * c for c, s in gradients]
+    return (n_c, n_s) if all(abs(one) < VANISHES for one in across) else None
 
 
 def _turn(motion: Motion) -> Turn:

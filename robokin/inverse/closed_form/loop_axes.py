@@ -26,29 +26,25 @@ def meeting_point(loop: Loop, first: int) -> tuple[float, float, float]:
 
     Infinity where neighbours are parallel.
     """
-    L, M = loop.links[first], loop.links[first + 1]
-    on_first, on_second = nearest_points(L)
-    on_second_too, on_third = nearest_points(M)
-    deviation = max(
-        float(np.linalg.norm(L[:3, 3] + on_second * L[:3, 2] - [0.0, 0.0, on_first])),
-        float(np.linalg.norm(M[:3, 3] + on_third * M[:3, 2] - [0.0, 0.0, on_second_too])),
-        abs(on_second - on_second_too),
-    )
+    on_first, on_second, apart = nearest_points(loop.links[first])
+    on_second_too, on_third, apart_too = nearest_points(loop.links[first + 1])
+    deviation = max(apart, apart_too, abs(on_second - on_second_too))
     finite = math.isfinite(on_first) and math.isfinite(on_third)
     return (deviation if finite else math.inf), on_first, on_third
 
 
-def nearest_points(L: Array) -> tuple[float, float]:
+def nearest_points(L: Array) -> tuple[float, float, float]:
     """The z of the points nearest to each other on the z axes of a frame and of the frame L (4, 4) in it.
 
-    NaN where the axes are parallel.
+    The third number is how far they are from each other. NaN where the axes are parallel.
     """
-    z, t = L[:3, 2], L[:3, 3]
-    sine_squared = float(z[:2] @ z[:2])
+    x, y, z = L[:3, 2].tolist()
+    t_x, t_y, t_z = L[:3, 3].tolist()
+    sine_squared = x * x + y * y
     if sine_squared < PARALLEL**2:
-        return math.nan, math.nan
-    along = -float(t[:2] @ z[:2]) / sine_squared
-    return float(t[2] + along * z[2]), along
+        return math.nan, math.nan, math.nan
+    along = -(t_x * x + t_y * y) / sine_squared
+    return t_z + along * z, along, math.hypot(t_x + along * x, t_y + along * y)
 
 
 def tilt(loop: Loop, first: int) -> float:

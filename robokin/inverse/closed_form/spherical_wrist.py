@@ -42,6 +42,7 @@ Reference: D. L. Pieper, "The kinematics of manipulators under computer control"
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 
@@ -120,24 +121,23 @@ class SphericalTriple:
         self.B = links[1] if first == 3 else None
         self.D = links[3] if first == 1 else None
         self.P, self.Q = links[self.joints[3]].R, links[self.joints[4]].R
-        _, near, self.far = meeting_point(loop, first)
-        self.u = moved(self.C, [0.0, 0.0, near])
-        self._prepare()
+        _, self.near, self.far = meeting_point(loop, first)
+        self.prepare()
 
     @classmethod
     def find(cls, loop: Loop, tolerance: float = GEOMETRIC) -> SphericalTriple | None:
         """The solver if three consecutive revolute axes meet within the tolerance [size], or None."""
         found = []
-        for first in range(4):
-            if loop.revolute[first : first + 3].all() and meeting_point(loop, first)[0] <= tolerance:
-                try:
-                    found.append(cls(loop, first))
-                except SingularEverywhereError:
-                    continue
+        for first in meeting_triples(loop, tolerance):
+            try:
+                found.append(cls(loop, first))
+            except SingularEverywhereError:
+                continue
         return min(found, key=lambda solver: (solver.cost, solver.deviation), default=None)
 
-    def _prepare(self) -> None:
-        """The two equations in (y_x, y_y, y_z, |y|²), their right sides less g's part, and how to solve them."""
+    def prepare(self) -> None:
+        """u, the two equations in (y_x, y_y, y_z, |y|²), their right sides less g's part, and how to solve them."""
+        self.u = moved(self.C, [0.0, 0.0, self.near])
         r1, r2, r3 = self.A.R
         t = self.A.t
         if self.a is Revolute:
@@ -147,7 +147,7 @@ class SphericalTriple:
         else:
             rows = [[*r1, 0.0], [*r2, 0.0]]
             self.known = times(-1.0, t[0]), times(-1.0, t[1])
-        self.rows = [[float(part) for part in row] for row in rows]
+        self.rows = cast(list[list[float]], rows)
         if self.b is Revolute:
             pair = Pair([(row[0], row[1]) for row in self.rows])
         else:
@@ -314,6 +314,14 @@ class SphericalTriple:
                 return turn, real & reached, loose(k)
         f = combined((1.0, 1.0), (sum_of_products(self.c, products), linear))
         return *self.c.roots(f), loose(f)
+
+
+def meeting_triples(loop: Loop, tolerance: float = GEOMETRIC) -> list[int]:
+    """The first of each three consecutive revolute axes that meet within the tolerance [size]."""
+    turning = loop.revolute.tolist()
+    return [
+        first for first in range(4) if all(turning[first : first + 3]) and meeting_point(loop, first)[0] <= tolerance
+    ]
 
 
 def sum_of_products(c: type[Revolute] | type[Prismatic], products: list[tuple[float, Form, Form]]) -> Form:

@@ -13,7 +13,7 @@ equations have the fourth degree, have no code.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -97,6 +97,14 @@ def compiled_form(source: str) -> StraightForm:
     names: dict[str, Any] = {"sqrt": math.sqrt, "copysign": math.copysign, "arctan2": np.arctan2}
     exec(compile(source, "<straight form>", "exec"), names)
     return cast(StraightForm, names["straight"])
+
+
+def form_maker(source: str, names: Sequence[str]) -> Callable[..., StraightForm]:
+    """A function that gives the function of a source for numbers that have names in it."""
+    lines = [f"def maker({', '.join(names)}):", *source.splitlines()]
+    known: dict[str, Any] = {"sqrt": math.sqrt, "copysign": math.copysign, "arctan2": np.arctan2}
+    exec(compile("\n    ".join([*lines, "return straight"]), "<straight forms>", "exec"), known)
+    return cast(Callable[..., StraightForm], known["maker"])
 
 
 def _source(value: int | float) -> str:

@@ -73,9 +73,9 @@ class ComplexCandidates:
     values: Complex
 
 
-def loop_of(chain: Chain) -> Loop:
-    """The loop of a chain of six joints."""
-    size = chain_size(chain)
+def loop_of(chain: Chain, size: float | None = None) -> Loop:
+    """The loop of a chain of six joints, whose size may be known [m]."""
+    size = chain_size(chain) if size is None else size
     constants = chain.constants.copy()
     constants[:, :3, 3] /= size
     return Loop(chain.revolute, constants[1:6], constants[0], constants[6], size)
