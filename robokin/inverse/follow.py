@@ -63,9 +63,6 @@ ITSELF = 1e-4
 STILL = 1e-9
 """Moves of joints below this [rad | size] are rounding."""
 
-ROUNDED = 1e-6
-"""Configurations [rad | size] that differ by less are one at a row of the path."""
-
 AROUND = (1e-4, 1e-3, 1e-2, 0.05, 0.3)
 """How far around a configuration [rad | size] descents start where steps from it do not arrive."""
 
@@ -118,11 +115,9 @@ class Follower:
             return end, found, ""
         self.begin(q)
         reached, found, why = self.halved(q, before, end)
-        if not why and not self.numeric:
+        if not why and not self.numeric and (exact := self.nearest(found, end)) is not None:
             # Steps end within rounding of poses; the list of solutions has the last digits.
-            exact = self.nearest(found, end)
-            if exact is not None and self.move(found, exact) <= ROUNDED:
-                found = exact
+            found = exact if self.move(found, exact) <= 0.01 * ITSELF else found
         return reached, found, why
 
     def halved(self, q: Array, before: float, end: float) -> tuple[float, Array, str]:
