@@ -18,7 +18,7 @@ from robokin.formats.pasted_joints import FUNCTIONS, IDENTIFIER, KINDS, NUMBERED
 from robokin.formats.pasted_row import PastedRow
 from robokin.formats.pasted_rows import pasted_rows
 from robokin.formats.pasted_units import ANGLES, angle_unit, length_unit
-from robokin.formats.schema import MAX_ROWS, VERSION
+from robokin.formats.schema import VERSION
 from robokin.units import METRES, Units
 
 PLAIN_NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
@@ -73,8 +73,6 @@ def described_table(text: str, wishes: Wishes) -> PastedRobot:
     Raises InputError where the text has no such table, or leaves open which joint turns and which slides.
     """
     rows, beside = pasted_rows(text, len(wishes.columns) if wishes.columns is not None else None)
-    if len(rows) > MAX_ROWS + 2:
-        raise InputError(f"found {len(rows)} rows, expected at most {MAX_ROWS}")
     rows, headings = _headed(rows, wishes.columns)
     headings = _numbered(headings, rows)
     caption = " ".join(line[:MAX_LINE] for line in beside)

@@ -11,6 +11,7 @@ from robokin.formats.pasted_code import code_rows
 from robokin.formats.pasted_headings import TABLE, heading_of
 from robokin.formats.pasted_markup import without_markup
 from robokin.formats.pasted_row import PastedRow
+from robokin.formats.schema import MAX_ROWS
 
 MAX_PASTED = 200_000
 """Characters of a pasted table; a page holds some thousands."""
@@ -99,7 +100,9 @@ def _folded(text: str) -> list[PastedRow]:
 
 
 def _short(table: list[PastedRow]) -> list[PastedRow]:
-    """The rows of a table. Raises InputError for a cell that is none."""
+    """The rows of a table. Raises InputError for a cell that is none, and for more than a robot has."""
+    if len(table) > MAX_ROWS + 2:
+        raise InputError(f"found {len(table)} rows, expected at most {MAX_ROWS}")
     for row in table:
         if (most := max(map(len, row.cells))) > MAX_CELL:
             raise InputError(f"line {row.line}: found a cell of {most} characters, expected a number or an expression")
