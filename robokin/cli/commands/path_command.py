@@ -104,7 +104,7 @@ def command(
         robokin path planar2r --from 30,40 --xy -0.9,0.1 --line --duration 2 -f csv
         robokin path puma560 --from home --xyz -300,700,200 --line --plot line.html
         robokin path planar2r --from 30,40 --to 60,30 --to 20,80 --line --blend 0.5
-        robokin path panda --from 0,-30,0,-100,0,90,0 --xyz 400,100,400 --line --hold q3
+        robokin path panda --from 0,-30,0,-100,0,90,0 --xyz 400,0,400 --line --hold q3
     """
     from robokin.inverse.follow import MOST
     from robokin.inverse.held_paths import path_with_held_joints
