@@ -65,7 +65,7 @@ class StudentQuestion:
         return self.exercise.id
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Sheet:
     """A sheet: its exercises, the students, the seed, and the numbers of each student's questions, in their order."""
 
@@ -73,6 +73,9 @@ class Sheet:
     students: tuple[str, ...]
     seed: str
     numbers: tuple[tuple[Given, ...], ...]
+
+    def __repr__(self) -> str:
+        return f"Sheet({len(self.exercises)} questions, {len(self.students)} students, seed {self.seed!r})"
 
     def questions(self, student: int) -> list[StudentQuestion]:
         """The questions of a student, by the number in the class, from 0."""
