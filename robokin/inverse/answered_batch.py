@@ -18,7 +18,7 @@ import numpy as np
 
 from robokin.arrays import Array, Index
 from robokin.inverse.plain_targets import PlainBlock, kernel_form
-from robokin.inverse.single_answer import known_reason, result_of
+from robokin.inverse.single_answer import known_reason, result_of, why_not
 from robokin.inverse.solutions import BatchResult, Result
 from robokin.inverse.solve_blocks import BLOCK
 from robokin.inverse.swivel_block import SwivelBlock, swivel_request
@@ -97,12 +97,15 @@ def _batch(request: Request, m: int, parts: list[_Share]) -> BatchResult:
         return next(found for part in parts if (found := part.place(i)) is not None)
 
     def single(i: int) -> Result:
-        return result_of(request, *place(i))
+        block, k = place(i)
+        return result_of(request, *(block.answered_by(k) if isinstance(block, PlainBlock) else (block, k)))
 
     def reason(i: int) -> str | None:
         block, k = place(i)
-        known = None if block.count[k] else known_reason(block, k)
-        return single(i).reason if known is None else known
+        if block.count[k]:
+            return None
+        known = known_reason(block, k)
+        return why_not(request, block, k)[0] if known is None else known
 
     analysis = request.analysis
     method = "numeric" if request.method == "numeric" else analysis.method

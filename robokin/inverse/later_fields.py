@@ -1,7 +1,8 @@
-"""Fields of a result that are found when they are first asked for: self-motions, and what comes nearest.
+"""Fields of a result that are found when they are first asked for: self-motions, proofs, and what comes nearest.
 
 Statement. To look at a result costs what is looked at: whether a pose is reached is known long before what comes
-nearest to it, which is a search, or what its self-motions are, which are followed.
+nearest to it, which is a search, or what its self-motions are, which are followed, or what else proves that there is
+no solution.
 Derivation. A result without such fields holds a function that gives them by name, and takes them from it when it is
 asked (`Result.__getattr__`). Others made of it (`changed`) hold the same function.
 Degenerate case. Copies and pickles: what is nearest is found for them, since what finds it knows a block of targets.
@@ -13,10 +14,13 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, TypeVar
 
-MOTIONS, WHY = "_alone", "_why"
+MOTIONS, WHY, PROOF = "_alone", "_why", "_proof"
 """Where a result keeps the functions."""
 
-FOUND_BY = {"families": MOTIONS, "families_complete": MOTIONS, "reason": WHY, "nearest": WHY}
+FOUND_BY = {
+    "families": MOTIONS, "families_complete": MOTIONS, "reason": WHY, "nearest": WHY, "basis": PROOF,
+    "certificate": PROOF,
+}  # fmt: skip
 """Which of them finds a field."""
 
 Kept = TypeVar("Kept")
@@ -39,6 +43,11 @@ def with_later_nearest(result: Kept, reason: str | None, find: Callable[[], tupl
     unknown = ("nearest", "reason") if reason is None else ("nearest",)
     one = result if reason is None else changed(result, reason=reason)
     return _with_later(one, WHY, unknown, partial(_why, find))
+
+
+def with_later_proof(result: Kept, find: Callable[[], tuple[str, str]]) -> Kept:
+    """A result whose basis and certificate, which `find` gives, are found when they are first asked for."""
+    return _with_later(result, PROOF, ("basis", "certificate"), partial(_proof, find))
 
 
 def nearest_unknown(result: object) -> bool:
@@ -69,3 +78,8 @@ def _families(alone: Callable[[], Any]) -> dict[str, Any]:
 def _why(find: Callable[[], tuple[str, Any]]) -> dict[str, Any]:
     reason, nearest = find()
     return {"reason": reason, "nearest": nearest}
+
+
+def _proof(find: Callable[[], tuple[str, str]]) -> dict[str, Any]:
+    basis, certificate = find()
+    return {"basis": basis, "certificate": certificate}

@@ -9,15 +9,20 @@ Degenerate case. None.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.claims import BASES, COUNTED, counted_sentence
+from robokin.inverse.later_fields import with_later_nearest, with_later_proof
 from robokin.inverse.one_target_arm import OneTargetArm
+from robokin.inverse.single_answer import FAR
 from robokin.inverse.solution_names import branch_names
-from robokin.inverse.solutions import Question, Result, named_later, regular_result
+from robokin.inverse.solutions import Question, Result, Solution, named_later, regular_result
+from robokin.inverse.target_block import OUTSIDE
 from robokin.model import Robot
 from robokin.spatial.angles import TURN
 
@@ -32,6 +37,7 @@ class OneAnswer:
     tried: how many candidates there were; table: (k, 10) a row for each that was found: joint values, turned into the
     limits where that can be [rad], what it lacks of the target [m, rad], whether it is within the limits, and how many
     configurations within them it is equivalent to, a column that may be left out; limits, most, wish: what was asked.
+    Where the table has no row there is proof that there is no solution.
     """
 
     arm: OneTargetArm
@@ -77,6 +83,37 @@ class OneAnswer:
             certificate=counted_sentence(analysis.number, count, self.arm.form is not None), all_known=True,
             question=question, families_complete=True,
         )  # fmt: skip
+
+    @property
+    def reached(self) -> bool:
+        """Whether there is a solution to list."""
+        return bool(self.table[:, 6 + INSIDE].any() if self.limits else len(self.table))
+
+    def unreached(self, question: Question, ask: Callable[[], Result]) -> Result:
+        """The answer for a question where there is nothing to list; `ask` gives the same with what is slow to find."""
+        arm, count = self.arm, len(self.table)
+        counts = {"found": self.tried, "duplicates": 0, "closing": count}
+        counts |= {"within_limits": 0, "listed": 0, "turns": 0} if self.limits else {"listed": 0}
+        certificate = counted_sentence(arm.analysis.number, count, arm.form is not None)
+        told = regular_result(
+            solutions=(), complete=True, method=arm.analysis.method, counts=counts, postures=True,
+            basis=BASES[COUNTED], certificate=certificate, all_known=True, question=question, families_complete=True,
+        )  # fmt: skip
+        asked = cache(ask)
+
+        def why() -> tuple[str, Solution]:
+            whole = asked()
+            assert whole.reason is not None and whole.nearest is not None
+            return whole.reason, whole.nearest
+
+        def proof() -> tuple[str, str]:
+            whole = asked()
+            # All roots are followed and complex, whatever else may have failed to prove it.
+            return (whole.basis or "counted", whole.certificate) if whole.complete else ("counted", certificate)
+
+        if count or arm.beyond(self.T):
+            return with_later_nearest(told, OUTSIDE if count else FAR, why)
+        return with_later_nearest(with_later_proof(told, proof), None, why)
 
     def _equivalents(self, row: int) -> int:
         """How many configurations within the limits a row's joint values are equivalent to, itself included."""

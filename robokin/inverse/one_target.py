@@ -103,7 +103,7 @@ def solve_one(
     position, angle = [one[3] for one in found], [one[4] for one in found]
     wish = None if near is None else near.tolist()
     inside = [_into_limits(arm, q, wish) for q in every]
-    if limits and not (any(inside) and all(map(partial(_well_placed, arm), inside, every))):
+    if limits and not all(map(partial(_well_placed, arm), inside, every)):
         return None
     table = np.array([(*q, *rest) for q, *rest in zip(every, position, angle, inside, strict=True)])
     return OneAnswer(arm, np.array(T), tried, table, limits, most, near)

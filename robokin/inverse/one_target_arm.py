@@ -8,8 +8,10 @@ Degenerate case. None for other arms; no handle where there is no native kernel,
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -67,6 +69,18 @@ class OneTargetArm:
     def robot(self) -> Robot:
         """The robot that is this arm."""
         return self.whose()
+
+    @cached_property
+    def _reach(self) -> tuple[float, float, float, float]:
+        """Where the first joint is, and how far the arm, stretched out, reaches [m]: as `beyond_chain` has them."""
+        constants = self.analysis.chain.constants
+        x, y, z = constants[0, :3, 3].tolist()
+        return x, y, z, float(np.sum(np.linalg.norm(constants[1:, :3, 3], axis=1))) + 1e-6 * self.analysis.size
+
+    def beyond(self, T: Array) -> bool:
+        """Whether a target T (4, 4) [m] is farther away than the arm, stretched out, is long."""
+        x, y, z, length = self._reach
+        return math.dist((x, y, z), T[:3, 3].tolist()) > length
 
 
 @fact

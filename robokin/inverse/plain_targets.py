@@ -5,6 +5,7 @@ blocks, and say which targets are left to these.
 Derivation. The kernel follows all roots of the closed form, proves each and looks at limits by the rules of
 `one_target`: what it answers is complete, and each of its targets is answered by itself.
 Degenerate case. What is not plain is no part of it. None where there is no native kernel, or it does not know the arm.
+Of targets that clearly have no solution the proof by a homotopy is found when a single answer is asked for.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis
-from robokin.inverse.claims import COUNTED, Claims
+from robokin.inverse.claims import COUNTED, NOTHING, Claims
+from robokin.inverse.numeric.closest import TOGETHER
 from robokin.inverse.one_target_arm import one_target_arm
 from robokin.inverse.target_block import Request, TargetBlock, in_order
 from robokin.inverse.verify import Found
@@ -63,7 +65,7 @@ class PlainBlock(TargetBlock):
             plain = self.plain
             T, count, listed, tables = T[plain], count[plain], listed[plain], [table[plain] for table in tables]
         self.request, self.T, self.tables = request, T, tables
-        self._nearest, self._arcs, self.swivel = {}, {}, None
+        self._nearest, self._arcs, self.swivel, self._proven = {}, {}, None, dict[int, tuple[TargetBlock, int]]()
         self.claims = Claims(np.full(len(T), COUNTED, dtype=np.int8), request.analysis.number, count, branches=True)
         self.claims.candidates, self.claims.duplicates = count, np.zeros_like(count)
         self.closing, self.within, self.count = count, listed, listed
@@ -94,6 +96,21 @@ class PlainBlock(TargetBlock):
         assert native is not None
         _, count, _, q, *_ = native.solutions(kernel_form(self.request), self.T, False, self.request.near)
         return q[np.arange(q.shape[1]) < count[:, None]], np.repeat(np.arange(len(count)), count)
+
+    def answered_by(self, i: int) -> tuple[TargetBlock, int]:
+        """The block that tells all of target i, and its number in that: another where more has to be found."""
+        if self.closing[i] or self.beyond[i]:
+            return self, i
+        if i not in self._proven:
+            none = (self.closing == 0) & ~self.beyond
+            rows = i + np.flatnonzero(none[i:])[: min(TOGETHER, 1 + len(self._proven))]
+            block = TargetBlock(self.request, self.T[rows])
+            # All branches are followed and complex, whatever else may have failed to prove it.
+            for k in np.flatnonzero(block.claims.basis == NOTHING).tolist():
+                block.claims.words.pop(k, None)
+                block.claims.basis[k], block.claims.N = COUNTED, self.claims.N
+            self._proven |= {row: (block, k) for k, row in enumerate(rows.tolist())}
+        return self._proven[i]
 
     def padded(self, most: int) -> tuple[Array, Array, Array, Flags]:
         """What is listed in tables of `most` rows a target: see `TargetBlock.padded`."""

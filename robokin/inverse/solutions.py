@@ -11,7 +11,7 @@ from robokin.arrays import Array, Flags, Index
 from robokin.brief import Answer, Brief
 from robokin.errors import InputTypeError
 from robokin.expected import described
-from robokin.inverse.later_fields import FOUND_BY, WHY, changed, nothing_yet, with_later_families
+from robokin.inverse.later_fields import FOUND_BY, changed, nothing_yet, with_later_families
 from robokin.model import Robot
 
 
@@ -185,8 +185,8 @@ class Result(Answer):
     nearest: Solution | None = field(default_factory=nothing_yet)
     counts: Mapping[str, int] = field(default_factory=dict)
     postures: bool = False
-    basis: str | None = None
-    certificate: str = ""
+    basis: str | None = field(default_factory=nothing_yet)
+    certificate: str = field(default_factory=str)
     all_known: bool = False
     families: tuple[Family, ...] = field(default_factory=tuple)
     question: Question | None = None
@@ -194,15 +194,14 @@ class Result(Answer):
 
     def __getstate__(self) -> dict[str, Any]:
         """The fields, and what finds self-motions that are not worked out yet, for copies and pickles."""
-        if WHY not in self.__dict__:
-            return dict(self.__dict__)
-        nearest = self.nearest  # worked out now: what finds it knows a whole block of targets
-        return {**self.__dict__, "nearest": nearest}
+        # Worked out now: what finds it knows a whole block of targets.
+        found = {name: getattr(self, name) for name in ("nearest", "basis") if FOUND_BY[name] in self.__dict__}
+        return {**self.__dict__, **found}
 
     if not TYPE_CHECKING:  # who reads the types knows the fields alone
 
         def __getattr__(self, name: str) -> Any:
-            """The self-motions, or the reason and what is nearest, where they are not worked out yet."""
+            """The self-motions, the proof, or the reason and what is nearest, where they are not worked out yet."""
             known = self.__dict__
             place = FOUND_BY.get(name)
             find = known.get(place)

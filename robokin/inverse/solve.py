@@ -107,7 +107,7 @@ def _one_target(
         arm = one_target_arm(robot)
         if arm is not None and (arm.kernel is not None or plain_pose(T)):
             answer = solve_one(arm, T, limits, most)
-            return None if answer is None else UnmadeResult(partial(_made, robot, None, answer, {}))
+            return None if answer is None else UnmadeResult(partial(_made, robot, None, answer, {}, method, seed))
         swivel = one_swivel_arm(robot) if arm is None and limits else None
         if swivel is not None and plain_pose(T):
             known = solve_swivel(swivel, T, most)
@@ -115,7 +115,7 @@ def _one_target(
         return None
     if not plain_pose(T) or isinstance(robot, CoupledRobot) or not (hold is None or isinstance(hold, Mapping)):
         return None
-    wish = _wished(robot, near)
+    wish = near = _wished(robot, near)
     part = None
     if hold:
         part = held_arm(robot, hold)
@@ -124,12 +124,25 @@ def _one_target(
         wish = own_near(part, wish)
     arm = one_target_arm(robot) if part is None else part.one
     answer = None if arm is None else solve_one(arm, T, limits, most, wish)
-    return None if answer is None else UnmadeResult(partial(_made, robot, part, answer, dict(hold or {})))
+    if answer is None:
+        return None
+    return UnmadeResult(partial(_made, robot, part, answer, dict(hold or {}), method, seed, near))
 
 
-def _made(robot: Robot, part: HeldArm | None, answer: OneAnswer, hold: dict[int, float]) -> Result:
+def _made(
+    robot: Robot,
+    part: HeldArm | None,
+    answer: OneAnswer,
+    hold: dict[int, float],
+    method: Method,
+    seed: int,
+    near: Array | None = None,
+) -> Result:
     """The result of an answer, when it is looked at."""
     question = Question(robot, answer.T, "pose", answer.limits, hold)
+    if not answer.reached:
+        how = answer.limits, near, method, "pose", answer.most, seed, False, hold or None, True
+        return answer.unreached(question, lambda: solve_many(robot, answer.T, *how)[0])
     return answer.result(question) if part is None else whole_result(robot, part, answer.result, question)
 
 

@@ -149,13 +149,19 @@ def test_mirrored_and_far_and_turned_targets_are_left_to_others(rng):
     arm = one_target_arm(entry("puma560"))
     T = robokin.forward_kinematics(arm.robot, np.full(6, 0.4))
     assert native.solution(arm.kernel, T, True, None, None) is not None
-    changes = {(0, 0): 0.5, (1, 2): np.nan, (3, 0): 1e-3, (2, 3): np.inf, (0, 3): 9.0}
+    changes = {(0, 0): 0.5, (1, 2): np.nan, (3, 0): 1e-3, (2, 3): np.inf}
     for place, value in changes.items():
         wrong = T.copy()
         wrong[place] = value
         assert native.solution(arm.kernel, wrong, True, None, None) is None
-        if not np.isfinite(value) or place == (0, 3):
+        if not np.isfinite(value):
             assert native.solutions(arm.kernel, np.stack([wrong, T]), True, None)[0].tolist() == [False, True]
+    far = T.copy()
+    far[0, 3] = 9.0
+    rows, _, tried = native.solution(arm.kernel, far, True, None, None)
+    assert (rows.shape, tried) == ((0, 10), 0)
+    plain, count, listed, *_ = native.solutions(arm.kernel, np.stack([far, T]), True, None)
+    assert (plain.tolist(), count.tolist(), int(listed[0])) == ([True, True], [0, 8], 0)
     assert not native.rigid(-T)
     assert native.rigid(np.stack([T, T])[None])
     assert not native.rigid(np.eye(3))

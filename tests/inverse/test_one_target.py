@@ -115,6 +115,44 @@ def test_a_held_joint_leaves_the_same_list(name, rng, monkeypatch):
         robokin.solve_ik(robot, T, hold={1: 50.0})
 
 
+@pytest.mark.parametrize(("name", "hold"), [("puma560", None), ("ur5e", None), ("crx10ia", None), ("iiwa14", {2: 0.3})])
+def test_a_pose_without_a_solution_is_told_alike_alone_in_a_batch_and_by_the_blocks(name, hold, rng, monkeypatch):
+    robot = entry(name)
+    T = robokin.forward_kinematics(robot, rng.uniform(-3, 3, (16, robot.n)))
+    away = 10.0 ** rng.uniform(-2, 0.5, (16, 1))
+    away[:4] = 1.0 + 10.0 ** rng.uniform(-6, -1, (4, 1))
+    T[:, :3, 3] *= away
+    batch = robokin.solve_ik(robot, T, hold=hold)
+    shown = [name for name in TOLD if name not in ("solutions", "question", "families", "counts", "nearest")]
+    for i in range(16):
+        one, expected = robokin.solve_ik(robot, T[i], hold=hold), in_blocks(monkeypatch, robot, T[i], hold=hold)
+        assert_same(one, expected)
+        assert [getattr(batch[i], name) for name in shown] == [getattr(expected, name) for name in shown]
+        assert batch.reason(i) == expected.reason
+        if len(one) == 0 and i % 4 == 0:
+            assert one.nearest.q.tobytes() == expected.nearest.q.tobytes()
+            assert one.nearest.branch == expected.nearest.branch
+            again = pickle.loads(pickle.dumps(robokin.solve_ik(robot, T[i], hold=hold)))
+            assert (again.basis, again.certificate, again.reason) == (one.basis, one.certificate, one.reason)
+
+
+def test_no_solution_is_known_without_blocks(monkeypatch):
+    def asked(*_, **__):
+        raise AssertionError("the blocks are asked")
+
+    robots = [entry(name) for name in ("puma560", "ur5e", "crx10ia")]
+    poses = [robokin.forward_kinematics(robot, np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])) for robot in robots]
+    if any(one_target_arm(robot).kernel is None for robot in robots):
+        pytest.skip("without the kernel it is for the blocks")
+    monkeypatch.setattr(solve, "solve_many", asked)
+    for robot, T in zip(robots, poses, strict=True):
+        T[:3, 3] *= 1.9
+        result = robokin.solve_ik(robot, T)
+        assert not result
+        assert (result.complete, result.postures, result.all_known, result.families) == (True, True, True, ())
+        assert result.counts == dict.fromkeys(("found", "duplicates", "closing", "within_limits", "listed", "turns"), 0)
+
+
 def test_every_proven_list_has_the_joint_values_that_made_the_pose(rng):
     for name in ("puma560", "ur5e", "irb120"):
         if name not in names_of(Robot):

@@ -49,8 +49,8 @@ class FormCode(list[tuple[str, str]]):
         self.say(f"if not {condition}: return None")
 
     def real(self, condition: str) -> None:
-        """Only roots for which a condition holds."""
-        self.say(f"if not {condition}: {'continue' if self.depth > 1 else 'return None'}")
+        """Only roots for which a condition holds; before there are roots, no solution unless it does."""
+        self.say(f"if not {condition}: {'continue' if self.depth > 1 else 'return leaves'}")
 
     def loop(self, *both: tuple[Entry, Entry]) -> list[Entry]:
         """A loop over two values of some entries; what follows is inside it."""

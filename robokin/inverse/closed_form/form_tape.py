@@ -7,7 +7,8 @@ from the same operations in the same order. A loop over two roots is a new level
 numbers, one for each root that was chosen so far. What depends on no root of a level is worked out for all of
 them at once, the same product is worked out once, two products and their sum are one step, and a register whose number
 is not asked for any more is given to another.
-Degenerate case. `return None` is a condition for there being an answer, `continue` one for a root being real. Of a
+Degenerate case. `return None` is a condition for there being an answer, `continue` one for a root being real, as is
+`return leaves` where there are no roots yet. Of a
 condition on a lever only the last of which is known that nothing but nearness is at stake: the kernel looks at that.
 Source that is not understood has no tape (None).
 """
@@ -180,9 +181,9 @@ class _SourceReader:
                     }
                 case ast.Assign(value=ast.Tuple()) | ast.Return():
                     pass
-                case ast.If(test=ast.UnaryOp(op=ast.Not(), operand=test), body=[ast.Return()]):
+                case ast.If(test=ast.UnaryOp(op=ast.Not(), operand=test), body=[ast.Return(value=ast.Constant())]):
                     self.condition(test, "needed")
-                case ast.If(test=ast.UnaryOp(op=ast.Not(), operand=test), body=[ast.Continue()]):
+                case ast.If(test=ast.UnaryOp(op=ast.Not(), operand=test), body=[ast.Continue() | ast.Return()]):
                     self.condition(test, "real")
                 case ast.For(iter=ast.Call(), body=inner):
                     self.statements(inner)

@@ -53,7 +53,9 @@ from robokin.kernel.entries import (
 
 Leaves = list[tuple[float, ...]]
 StraightForm = Callable[[list[float]], Leaves | None]
-"""Joint values (6) [rad] of each real root, for the first three rows of L6 in reading order; None for no answer."""
+"""Joint values (6) [rad] of each real root, for the first three rows of L6 in reading order; None for no answer.
+
+There may be no such root."""
 
 
 def straight_form(solver: Any) -> StraightForm | None:

@@ -281,7 +281,7 @@ static double equivalents(const Form *form, const double *q) {
 }
 
 /* solution(form, T, limits, wish, elimination): a row q, position, angle, inside, equivalents for each solution, and the target as it
-   was; None where others are to look at it, or none is within the limits. */
+   was; None where others are to look at it. No row where there clearly is no solution. */
 static PyObject *solution(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     double T[16], wish[SIX], q[MOST_CANDIDATES][SIX], position[MOST_CANDIDATES], angle[MOST_CANDIDATES];
     unsigned char inside[MOST_CANDIDATES];
@@ -304,15 +304,15 @@ static PyObject *solution(PyObject *self, PyObject *const *args, Py_ssize_t coun
         for (int c = 0; c < 4; c++)
             T[4 * r + c] = *(const double *)(from + r * PyArray_STRIDE(given, 0) + c * PyArray_STRIDE(given, 1));
     Solutions out = {q[0], position, angle, inside, 0};
-    int plain = plain_pose(T), within = 0, found = 0;
+    int plain = plain_pose(T), found = 0;
     if (plain && general)
         found = lanes.listed_elimination(general, known, T, &wanted, &out, &tried);
     else if (plain)
         tried = found = lanes.solution(known, T, &wanted, &out);
-    for (int k = 0; k < found; k++)
-        within += inside[k];
-    if (!found || (wanted.limits && !within))
+    if (!found)
         Py_RETURN_NONE;
+    if (found == NONE_AT_ALL)
+        tried = found = 0;
     const npy_intp shape[] = {found, COLUMNS}, four[] = {4, 4};
     PyObject *rows = PyArray_EMPTY(2, shape, NPY_DOUBLE, 0);
     PyObject *target = rows ? PyArray_EMPTY(2, four, NPY_DOUBLE, 0) : NULL, *both = NULL;

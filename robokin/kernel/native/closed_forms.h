@@ -2,8 +2,8 @@
 
    A tape gives the joint values of every real root. They are proven by the chain, wrapped, put in order and turned into
    the limits, as robokin.inverse.one_target and verify do it. What is not plain is left to these: a candidate that is
-   not exact, an odd number of solutions or none, solutions near to each other or to limits where the arm may be
-   singular.
+   not exact, an odd number of solutions, solutions near to each other or to limits where the arm may be
+   singular. That there is none is an answer where every root is clearly complex.
 */
 
 #include "tape.h"
@@ -55,11 +55,11 @@ typedef double Slot[LANES];
 typedef long long Truth[LANES];
 
 /* What a tape leaves: its registers, the real roots by level (all in one row where roots are lanes), and the lanes that
-   have no answer, or a short lever. */
+   have no answer, a short lever, or a root that is nearly real. */
 typedef struct {
     Slot v[MOST_SLOTS];
     Truth real[MOST_LEVELS + 1][MOST_ROOTS];
-    Truth lost, near;
+    Truth lost, near, almost;
 } Worked;
 
 #define OVER_LANES for (int l = 0; l < LANES; l++)
@@ -98,7 +98,7 @@ static inline void run_tape(const Form *form, Worked *at, int flat) {
     int wide = 1;
     for (int k = 0; k <= MOST_LEVELS; k++)
         OVER_LANES at->real[k][0][l] = -1;
-    OVER_LANES at->lost[l] = at->near[l] = 0;
+    OVER_LANES at->lost[l] = at->near[l] = at->almost[l] = 0;
     for (const Step *step = form->tape, *end = step + form->steps; step < end; step++) {
         Slot *out = at->v + step->out.slot;
         const Slot *a = at->v + step->a.slot, *b = at->v + step->b.slot, *c = at->v + step->c.slot,
@@ -156,7 +156,10 @@ static inline void run_tape(const Form *form, Worked *at, int flat) {
                 }
             break;
         case REAL:
-            EVERY(((Bits *)real[k])[h] &= x >= y);
+            EVERY(Part off = y - x; /* what is no number, or without end, says nothing */
+                  ((Bits *)at->almost)[h] |=
+                  ((Bits *)real[k])[h] & ~(x >= y) & ~((off > CLEARLY_COMPLEX * ONE) & (off < INFINITY * ONE));
+                  ((Bits *)real[k])[h] &= x >= y);
         case NEEDED:
             EVERY(((Bits *)at->lost)[h] |= ((Bits *)real[k])[h] & ~(x >= y));
         case LEVER:
@@ -442,13 +445,19 @@ static void begun(const Form *form, Worked *at) {
         OVER_LANES at->v[form->inputs + k][l] = form->value[k];
 }
 
+/* Whether there is clearly no solution for a target of which `count` real roots are known. */
+static int nowhere(int count, long long lost, long long near, long long almost) {
+    return !count && !lost && !near && !almost;
+}
+
 /* Whether a target may be looked at further: its roots are a proper number, none is missing. */
 static int sound(const Form *form, int count, int near) {
     int all = form->leaves << form->levels;
     return count && count % 2 == 0 && !(near && count < all);
 }
 
-/* The number of solutions for one target T (4, 4), which are put into `out`; 0 where others are to look at it. */
+/* The number of solutions for one target T (4, 4), which are put into `out`; 0 where others are to look at it, and
+   NONE_AT_ALL. */
 int NAMED(solution)(const Form *form, const double *T, const Wanted *wanted, Solutions *out) {
     Worked at;
     Slot wish[12];
@@ -458,12 +467,15 @@ int NAMED(solution)(const Form *form, const double *T, const Wanted *wanted, Sol
     begun(form, &at);
     closing(form, wish, at.v);
     run_tape(form, &at, 1);
-    long long lost = 0, near = 0;
+    long long lost = 0, near = 0, almost = 0;
     OVER_LANES {
         lost |= at.lost[l];
         near |= at.near[l];
+        almost |= at.almost[l];
     }
     int count = lost ? 0 : roots_of(form, &at, 1, 0, q);
+    if (nowhere(count, lost, near, almost))
+        return NONE_AT_ALL;
     if (!sound(form, count, near != 0) || !finished(form, T, q, count, near != 0, wanted, out))
         return 0;
     return count;
@@ -488,9 +500,10 @@ void NAMED(solutions)(const Form *form, const double *T, ptrdiff_t m, const Want
         run_tape(form, &at, 0);
         for (ptrdiff_t l = 0; l < some; l++) {
             int near = at.near[l] != 0, count = at.lost[l] ? 0 : roots_of(form, &at, 0, (int)l, q);
-            int done = sound(form, count, near) &&
-                       finished(form, T + 16 * (first + l), q, count, near, wanted, &here);
-            int rows = done ? here.listed : 0;
+            int none = nowhere(count, at.lost[l], near, at.almost[l]);
+            int done = none || (sound(form, count, near) &&
+                                finished(form, T + 16 * (first + l), q, count, near, wanted, &here));
+            int rows = done && !none ? here.listed : 0;
             plain[first + l] = (unsigned char)done;
             counts[first + l] = done ? count : 0;
             listed[first + l] = rows;

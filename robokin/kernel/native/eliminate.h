@@ -52,6 +52,9 @@
 #define FAR_OUT 7.0
 #define STEP_ON 1e-2
 
+/* An imaginary part [rad] above which no real solution is near. */
+#define CLEARLY_IMAGINARY 0.03
+
 /* Solutions of a target that are known. */
 typedef struct {
     int real, pairs;
@@ -467,6 +470,13 @@ void NAMED(eliminated)(const Elimination *E, const double *T, Eliminated *out) {
     }
     out->number = number_of(&known);
     out->count = known.real;
+    out->imaginary = INFINITY;
+    for (int k = 0; k < known.pairs; k++) {
+        double away = 0.0;
+        for (int i = 0; i < 6; i++)
+            away = fmax(away, fabs(known.im[k][i]));
+        out->imaginary = fmin(out->imaginary, away);
+    }
     for (int k = 0; k < known.real; k++) {
         for (int i = 0; i < 6; i++)
             out->q[k][i] = known.q[k][i] - E->arm.offsets[i];
@@ -475,7 +485,8 @@ void NAMED(eliminated)(const Elimination *E, const double *T, Eliminated *out) {
     }
 }
 
-/* The solutions for a target T in the order of the list, which are put into `out`; 0 where others are to look at it.
+/* The solutions for a target T in the order of the list, which are put into `out`; 0 where others are to look at it, and
+   NONE_AT_ALL where all are known and clearly complex.
 
    `tried`: how many candidates there were. */
 int NAMED(listed_elimination)(const Elimination *E, const Form *form, const double *T, const Wanted *wanted,
@@ -489,6 +500,8 @@ int NAMED(listed_elimination)(const Elimination *E, const Form *form, const doub
     NAMED(eliminated)(E, T, &found);
     *tried = found.tried;
     int count = found.count;
+    if (found.number == E->number && !found.tried && !found.looked && found.imaginary > CLEARLY_IMAGINARY)
+        return NONE_AT_ALL;
     if (found.number != E->number || count < 2 || count % 2)
         return 0;
     for (int g = 0; g * LANES < count; g++) {

@@ -43,6 +43,7 @@ typedef struct {
     int number;              /* distinct regular complex solutions that are known */
     int count;               /* real ones */
     int looked;              /* poses next door that were asked */
+    double imaginary;        /* the greatest imaginary part of a joint's value, the least of all complex solutions */
     double q[MOST_CANDIDATES][6], position[MOST_CANDIDATES], angle[MOST_CANDIDATES];
 } Eliminated;
 

@@ -51,6 +51,12 @@ enum Operation {
     OPERATIONS
 };
 
+/* A root that is not real misses its condition by more where it is clearly complex: lengths are in sizes. */
+#define CLEARLY_COMPLEX 1e-3
+
+/* What stands for the number of solutions where it is clear that there is none. */
+#define NONE_AT_ALL -1
+
 /* Square of a lever below which the arrays take further steps (robokin's LOOSE). */
 #define LEAST_LEVER 1e-12
 
