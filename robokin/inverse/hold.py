@@ -102,12 +102,15 @@ def held_arm(robot: Robot, hold: Mapping[int, float]) -> HeldArm:
     """
     checked = tuple(sorted(_checked(robot, hold).items()))
     kept = _held_arms(robot)
-    if checked in kept:
+    arm = kept.get(checked)
+    if arm is None:
+        arm = kept.setdefault(checked, _held(robot, dict(checked)))
+    try:
         kept.move_to_end(checked)
-        return kept[checked]
-    arm = kept[checked] = _held(robot, dict(checked))
-    if len(kept) > KEPT:
-        kept.popitem(last=False)
+        if len(kept) > KEPT:
+            kept.popitem(last=False)
+    except KeyError:  # another thread has let go of it in between
+        pass
     return arm
 
 

@@ -50,7 +50,7 @@ class SlerpedTurn:
         axis, angle = axis_angle_from_rotation(first[:3, :3].T @ last[:3, :3])
         self.axis, self.angle = axis, float(angle)
         if self.half_turn and axis[np.argmax(np.abs(axis) > UNSIGNED)] < 0.0:
-            # CornerRounding must not toss which way round it turns.
+            # Rounding must not toss which way round it turns.
             self.axis, self.angle = -axis, 2.0 * np.pi - self.angle
 
     places = np.empty(0)

@@ -34,7 +34,7 @@ NEWTON_STEPS = 12
 """Steps of the polish. From 1e-4 two are enough; at double roots each step halves the error."""
 
 SAME = 1e-6
-"""Configurations that differ by less in every joint [rad | size] are one. CornerRounding moves a solution by 1e-9 at
+"""Configurations that differ by less in every joint [rad | size] are one. Rounding moves a solution by 1e-9 at
 a singular pose at most once it closes; different solutions are rarely nearer than 1e-4 to each other."""
 
 HALF_TURN = 1e-9

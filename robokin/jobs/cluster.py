@@ -14,6 +14,7 @@ import os
 import pickle
 import signal
 import threading
+import time
 import warnings
 from collections.abc import Callable, Iterator
 from importlib import import_module
@@ -34,14 +35,25 @@ CONNECTING = 10.0
 ARRIVING = 60.0
 """Seconds that the first worker of a cluster has to arrive."""
 
+LEFT_ALONE = 300.0
+"""Seconds that a cluster whose workers are all gone has to get others, before its tasks are given up."""
+
+LOOKING = 5.0
+"""Seconds from one look at the number of workers to the next."""
+
 SETTINGS = {
     "distributed.worker.daemon": False,  # marks of answers are made in a process of their own
     "distributed.comm.timeouts.connect": f"{CONNECTING:g}s",
     "distributed.scheduler.work-stealing": True,
+    # A process that takes the place of one that ended may take longer than Dask's 15 s to start, on a busy machine; it
+    # would be closed, and nobody would be left.
+    "distributed.deploy.lost-worker-timeout": f"{LEFT_ALONE:g}s",
     "distributed.admin.large-graph-warning-threshold": "1GB",  # the rows of a part go with its task
 }
 """Of Dask, for as long as a cluster is used here; what is wrong is said in sentences."""
 
+
+_ALONE = "the cluster has had no worker for {:g} s, expected at least one until the work is done"
 
 LOGGERS = ("distributed", "distributed.client")
 """Of Dask's loggers those that have a level of their own."""
@@ -182,18 +194,34 @@ class _ClusterExecutor:
     """Takes tasks for a cluster; each brings the versions along with which its answer would be the same."""
 
     def __init__(self, client: Any) -> None:
-        self.executor = client.get_executor(pure=False)
+        self.client, self.executor = client, client.get_executor(pure=False)
         self.versions = versions()
+        self.alone, self.over = False, threading.Event()
+        threading.Thread(target=self._look_for_workers, daemon=True).start()
 
     def submit(self, fn: Callable[..., Any], /, *arguments: Any) -> Any:
         """Have a function called by some worker."""
+        if self.alone:
+            raise WorkerError(_ALONE.format(LEFT_ALONE))
         call = pickle.dumps(_Call(self.versions, fn, arguments))
-        return _ClusterPromise(self.executor.submit(pickle.loads, call))
+        return _ClusterPromise(self, self.executor.submit(pickle.loads, call))
 
     def close(self) -> None:
         """What has not begun is left out."""
+        self.over.set()
         with contextlib.suppress(Exception):
-            self.executor.shutdown(wait=False, cancel_futures=True)
+            self.executor.shutdown(wait=False)
+
+    def _look_for_workers(self) -> None:
+        """Give the tasks up when there has been no worker for a long time: Dask would wait for ever."""
+        seen = time.monotonic()
+        while not self.over.wait(LOOKING):
+            with contextlib.suppress(Exception):
+                if self.client.nthreads():
+                    seen = time.monotonic()
+            if time.monotonic() - seen > LEFT_ALONE and not self.over.is_set():
+                self.alone = True
+                self.close()
 
 
 class _Call:
@@ -211,8 +239,8 @@ class _Call:
 class _ClusterPromise:
     """A task of a cluster; what went wrong with the cluster itself is said in sentences."""
 
-    def __init__(self, promise: Any) -> None:
-        self.promise = promise
+    def __init__(self, executor: _ClusterExecutor, promise: Any) -> None:
+        self.executor, self.promise = executor, promise
 
     def result(self) -> Any:
         """What the function gave, or its error. Raises WorkerError where the cluster has lost it for good."""
@@ -221,6 +249,8 @@ class _ClusterPromise:
         try:
             return self.promise.result()
         except CancelledError:
+            if self.executor.alone:
+                raise WorkerError(_ALONE.format(LEFT_ALONE)) from None
             raise WorkerError("the scheduler is gone, expected it to stay until the work is done") from None
         except Exception as error:
             if type(error).__name__ == "KilledWorker":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import weakref
+from collections import OrderedDict
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from sweeps import sweep
 
 import robokin
 from robokin.errors import InputError
+from robokin.inverse import hold
 from robokin.inverse.hold import KEPT, held_arm, with_held_joints
 from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution
 from robokin.inverse.verify import wrapped
@@ -193,6 +195,24 @@ def test_held_arms_are_kept_but_not_for_ever():
     del first
     gc.collect()
     assert gone() is None
+
+
+class LetGo(OrderedDict):
+    """Arms that another thread lets go of as soon as one is found."""
+
+    def get(self, key, default=None):
+        found = super().get(key, default)
+        self.clear()
+        return found
+
+
+def test_an_arm_that_is_let_go_of_meanwhile_is_given_all_the_same(monkeypatch):
+    robot = robokin.load("panda")
+    kept = LetGo()
+    monkeypatch.setattr(hold, "_held_arms", lambda robot: kept)
+    first = held_arm(robot, {2: 0.5})
+    assert held_arm(robot, {2: 0.5}) is first
+    assert held_arm(robot, {2: 0.5}).part.n == 6
 
 
 def test_the_order_of_what_is_held_does_not_matter():

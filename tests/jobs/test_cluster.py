@@ -81,6 +81,20 @@ def test_a_worker_of_another_version_is_refused(two, monkeypatch):
         [*ordered_map(square, range(3))]
 
 
+def test_tasks_of_a_cluster_without_workers_are_given_up(monkeypatch):
+    from distributed import LocalCluster
+
+    monkeypatch.setattr(clusters, "LEFT_ALONE", 1.0)
+    monkeypatch.setattr(clusters, "LOOKING", 0.1)
+    own = LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0")
+    with own, cluster(own.scheduler_address) as workers:
+        assert workers == 1
+        own.scale(0)
+        for mapped in (ordered_map, finished_map):
+            with pytest.raises(WorkerError, match="the cluster has had no worker for 1 s, expected at least one"):
+                [*mapped(square, range(3))]
+
+
 def test_the_address_may_be_that_of_a_scheduler_or_its_file(tmp_path):
     from distributed import LocalCluster
 
