@@ -348,6 +348,8 @@ def test_arrays_that_do_not_fit_are_refused(rng):
         lambda: native.descended(arm, one((3, 4, 4)), one(3), one((3, 7)), 1.0, one(6), one(7), 3),
         lambda: native.corrected(arm, one((3, 4, 4)), one((3, 9, 7)), 9, one(3), one((3, 7)), 1.0, 0.0, 0.0),
         lambda: native.corrected(arm, one((3, 4, 4)), one((3, 2, 7)), 1, one(3), one((3, 7)), 1.0, 0.0, 0.0),
+        lambda: native.corrected(arm, one((3, 4, 4)), one((3, 1, 7)), 1, np.inf * one(3), one((3, 7)), 1.0, 0.0, 0.0),
+        lambda: native.corrected(arm, one((3, 4, 4)), one((3, 1, 7)), 1, np.nan * one(3), one((3, 7)), 1.0, 0.0, 0.0),
         lambda: native.candidates(arm, one((3, 4, 4))),
         lambda: advanced(arm, 3, 1),
         lambda: advanced(arm, 2, 2),

@@ -203,7 +203,9 @@ def test_arrays_that_do_not_fit_are_refused():
     for few in (native.arranged, native.each_once, native.regular, native.shortest, native.finely_closed):
         with pytest.raises(TypeError):
             few(loop)
-    with pytest.raises(TypeError):
-        native.arranged(index, one((3, 6)), one(3), one(6), 1.0, *told[:2], (1.0, 2.0))
+    for thresholds in ((1.0, 2.0), None, 1.0, one(4)):
+        with pytest.raises(TypeError):
+            native.arranged(index, one((3, 6)), one(3), one(6), 1.0, *told[:2], thresholds)
+    assert native.each_once(one(6), weights, index, one((3, 12)), one(3), 2**63 - 1).sum() == 1
     with pytest.raises(TypeError):
         native.arranged(None, one((3, 6)), one(3), one(6), 1.0, *told)

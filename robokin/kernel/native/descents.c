@@ -344,6 +344,11 @@ static PyObject *corrected(PyObject *self, PyObject *const *args, Py_ssize_t cou
     const double *T = table(args[1], 16, &m, &copies[0]), *normals = T ? table(args[2], extra * n, &m, &copies[1]) : NULL;
     const double *most = normals ? table(args[4], 1, &m, &copies[2]) : NULL;
     const double *from = most ? table(args[5], n, &m, &copies[3]) : NULL;
+    for (npy_intp k = 0; from && k < m; k++)
+        if (!(most[k] <= MOST_STEPS_ASKED)) {
+            PyErr_SetString(PyExc_ValueError, "expected a number of steps");
+            goto end;
+        }
     x = from ? made(m, n) : NULL;
     off = x ? made(m, 0) : NULL;
     const npy_intp shape[] = {m, 6, n};

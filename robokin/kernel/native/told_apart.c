@@ -113,7 +113,7 @@ static PyObject *each_once(PyObject *self, PyObject *const *args, Py_ssize_t cou
     }
     qsort(rows, (size_t)s, sizeof *rows, ordered);
     for (npy_intp k = 0; k < s; k++)
-        for (npy_intp j = k + 1; j < s && j <= k + compared && rows[j].target == rows[k].target; j++) {
+        for (npy_intp j = k + 1; j < s && j - k <= compared && rows[j].target == rows[k].target; j++) {
             const double *a = values + 12 * rows[k].place, *b = values + 12 * rows[j].place;
             double least = fmax(apart[rows[k].place], apart[rows[j].place]), greatest = 0.0;
             if (!(fabs(rows[j].key - rows[k].key) < 24.0 * least))
@@ -214,6 +214,10 @@ static PyObject *arranged(PyObject *self, PyObject *const *args, Py_ssize_t coun
     all.weights = all.cells ? numbers(args[6], 1, &n, &copies[5]) : NULL;
     if (!all.weights)
         goto end;
+    if (!PyTuple_Check(args[7])) {
+        PyErr_SetString(PyExc_TypeError, "expected a tuple of thresholds");
+        goto end;
+    }
     if (!PyArg_ParseTuple(args[7], "dddd", &all.same, &all.close, &all.half_turn, &all.off_centre))
         goto end;
     all.n = n;
