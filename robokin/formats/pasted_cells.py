@@ -154,10 +154,10 @@ def pasted_cell(text: str, *, decimal_commas: bool = False) -> PastedCell:
     text = re.sub(r"(?<=[A-Za-z])_(?=\d)", "", text)
     text = re.sub(r"(?<![a-z])\((\w+)\)(?=\s*/)", r"\1", text)
     text = re.sub(r"/\s*\((\w+)\)", r"/\1", text)
-    text = re.sub(r"(?<![\w.])(\d+\.?\d*|\.\d+)\s*(?=[A-Za-df-z(]|e(?![-+\d]))", r"\1*", text)
+    text = re.sub(r"(?<![\w.])(\d+\.?\d*|\.\d+)\s*(?=[A-DF-Za-df-z(]|[eE](?![-+]?\d))", r"\1*", text)
     text = re.sub(r"^\s*\+\s*", "", text)
     text = (
-        re.sub(r"(?<!\d[eE])(?<![\s*/(])\s*([+\-])\s*(?=[\w(.])", r" \1 ", text).strip()
+        re.sub(r"(?<!\d[eE])(?<!\d\.[eE])(?<![\s*/(])\s*([+\-])\s*(?=[\w(.])", r" \1 ", text).strip()
         if re.search(r"[\w)]\s*[+\-]", text)
         else text
     )

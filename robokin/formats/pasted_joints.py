@@ -11,7 +11,7 @@ from robokin.formats.pasted_cells import UNIT, UNITS, PastedCell, pasted_cell, p
 from robokin.formats.pasted_headings import PastedHeading
 from robokin.formats.pasted_row import PastedRow
 
-IDENTIFIER = re.compile(r"[A-Za-z]\w*")
+IDENTIFIER = re.compile(r"(?<!\w)(?<!\d\.)[A-Za-z]\w*")
 FUNCTIONS = ("pi", "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "abs", "min", "max", "deg", "rad")
 VARIABLES = {
     "theta": re.compile(r"(theta|q|th|phi|psi|beta|gamma|t)(i|j|\d{1,3})?$", re.IGNORECASE),

@@ -140,7 +140,9 @@ def _size(context: Context, lengths: list[Number], described: Robot | Mechanism 
     small = isinstance(described, Robot) and unit != "m"
     if size > (FARTHEST_ARM if hinges and unit == "m" else FARTHEST):
         too, other = "large", "`units: {length: mm}`" if unit == "m" else "a larger number of a smaller unit"
-    elif 0.0 < size < (NEAREST_IN_SMALL_UNITS if small else NEAREST) or (small and size < SMALL_ARM and _fine(lengths)):
+    elif 0.0 < size < (NEAREST_IN_SMALL_UNITS if small else NEAREST) or (
+        small and 0.0 < size < SMALL_ARM and _fine(lengths)
+    ):
         too, other = "small", "`units: {length: m}`" if unit != "m" else "metres"
     else:
         return None

@@ -85,6 +85,7 @@ def test_a_slip_is_noted_at_its_place(text, said):
         arm("type: R, a: 0.3", head=METRES, tail="base: Trans(5000, 300, 0)\n"),
         arm("type: R, alpha: 90"),
         arm("type: fixed, theta: 30"),
+        arm("type: P, alpha: 90", tail="poses: {home: [0.1]}\n"),  # of an arm without lengths nothing is known
     ],
 )
 def test_what_can_be_meant_is_not_noted(text):

@@ -37,6 +37,25 @@ def test_a_text_is_read_as_it_is_pasted():
     assert made.fk([0, 0])[:3, 3] == pytest.approx([0.3, 0, 0.4])
 
 
+@pytest.mark.parametrize("number", [1e-6, 1e-300, -2.5e-9, 6.123233995736766e-17, 1e5])
+def test_numbers_are_taken_however_they_are_written(number):
+    """The e of 1e-06 is no length's name."""
+    joint = robokin.from_table([[number, 0.3, 0.2, number], [0, 0, 0.5, 0]]).joints[0]
+    assert (joint.offset, joint.alpha) == (number, number)
+    if abs(number) < 1.0:
+        assert robokin.from_table([[0, 0.3, number, 0], [0, 0, 0.5, 0]]).joints[0].a == number
+
+
+@pytest.mark.parametrize(
+    "text", ["2.5e-01", "2.5E-1", "25.e-02", "25.E-2", ".25e+0", ".025e1", "25e-2 m", "1 - 75.e-02"]
+)
+def test_exponents_of_ten_in_a_text_are_no_names(text):
+    """As numpy and MATLAB print them; a number before a letter is a factor."""
+    made = robokin.from_table(f"i,theta,d,a,alpha\n1,q1,{text},0,90°\n2,q2,2e,2E+e,0", values={"e": 0.1, "E": 0.2})
+    assert [joint.d for joint in made.joints] == [pytest.approx(0.25, abs=1e-15), pytest.approx(0.2, abs=1e-15)]
+    assert made.joints[1].a == pytest.approx(0.5, abs=1e-15)
+
+
 def test_methods_are_the_functions():
     robot = robokin.load("puma560")
     q = robot.poses["home"]
