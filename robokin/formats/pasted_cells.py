@@ -49,6 +49,13 @@ UNITS = {
 """Units as tables write them, and their names here."""
 
 UNIT = re.compile(r"(?<=[\d.)])\s*(millimet(?:er|re)s|mm|cm|m|inch(?:es)?|in|degrees?|deg|radians?|rads?)\b")
+FRACTIONS = "¼½¾⅐⅑⅒⅓⅔⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞"
+FRACTION = re.compile(
+    rf"(?:(?<![\w.,])(?P<whole>\d+) ?|(?P<glued>(?<=\w)))?(?P<part>[{FRACTIONS}])"
+    r"(?P<factor>\s?(?=[A-Za-zπ√(\\])(?!(?:mm|cm|m|in|inch(?:es)?|deg|degrees?|rad|radians?)\b))?"
+)
+"""A fraction that is one letter, and the whole number before it: 2½ is two and a half, where its digits are 21/2."""
+
 SUPERSCRIPTS = str.maketrans("¹²³⁴⁵⁶⁷⁸⁹", "123456789")
 EMPHASIS = (
     re.compile(r"(?<![\w)*])\*\*(?=[^\s*])([^*\n]{1,200})(?<=\S)\*\*(?![\w(*])"),
@@ -109,6 +116,7 @@ def plain_text(text: str) -> str:
         text = bold.sub(r"\1", text)
     # A power or the mark of a footnote is no digit of the number before it.
     text = re.sub(r"[¹²³⁴⁵⁶⁷⁸⁹]+", lambda raised: "^" + raised[0].translate(SUPERSCRIPTS), text)
+    text = FRACTION.sub(_fraction, text)
     for _ in range(3):  # what stands in braces may have braces
         for pattern, plain in LATEX:
             text = re.sub(pattern, plain, text)
@@ -123,6 +131,13 @@ def plain_text(text: str) -> str:
     return " ".join(
         text.replace("{", "").replace("}", "").replace("⁄", "/").replace("×", "*").replace("·", "*").split()
     )
+
+
+def _fraction(found: re.Match[str]) -> str:
+    """A fraction as a factor; behind a name it is none, and no expression."""
+    before = f"{found['whole']}+" if found["whole"] else ""
+    glued, factor = " " * (found["glued"] is not None), "*" * (found["factor"] is not None)
+    return f"{glued}({before}{found['part']}){factor}"
 
 
 def pasted_cell(text: str, *, decimal_commas: bool = False) -> PastedCell:

@@ -32,6 +32,9 @@ ASSIGNED = re.compile(
 CHAINED = re.compile(r"=([\d.+\-*/ ()]{1,80})=\s*(-?(?:\d+\.?\d*|\.\d+))(?![\w.])")
 """A number with how it comes about: `0.33 + 0.42 = 0.75`."""
 
+SCALED = re.compile(r"\d(?:\.\d*)?[eE][-+]?\d+\s{0,4}[*×x]\s*$")
+"""A factor on a line of its own, as MATLAB prints it above a matrix whose numbers it belongs to."""
+
 PART_OF_PI = re.compile(r"(?<![\w.])(?:(\d{1,4})\s*\*\s*)?pi(?:\s*/\s*(\d{1,4}))?(?!\s*[\w.*/(])")
 
 PLACED = re.compile(r"\b((?:base|tool): (?:Trans|Rot|RPY|Rx|Ry|Rz)\([\w ,.()*/+-]{0,400}\))")
@@ -73,6 +76,11 @@ def described_table(text: str, wishes: Wishes) -> PastedRobot:
     Raises InputError where the text has no such table, or leaves open which joint turns and which slides.
     """
     rows, beside = pasted_rows(text, len(wishes.columns) if wishes.columns is not None else None)
+    if scaled := next((line for line in beside if SCALED.match(line.strip())), None):
+        raise InputError(
+            f"found the factor '{shown(scaled.strip())}' beside the table, expected its numbers written out: MATLAB "
+            "prints them so after `format shortG`"
+        )
     rows, headings = _headed(rows, wishes.columns)
     headings = _numbered(headings, rows)
     caption = " ".join(line[:MAX_LINE] for line in beside)

@@ -56,6 +56,28 @@ def test_exponents_of_ten_in_a_text_are_no_names(text):
     assert made.joints[1].a == pytest.approx(0.5, abs=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("2½", 2.5), ("-1½", -1.5), ("2 ¾ m", 2.75), ("½", 0.5), ("½L1", 5.0), ("L1/½", 20.0), ("L1 − ½", 9.5),
+     ("√½", 0.5**0.5), ("½√2", 0.5**0.5), ("¾²", 0.5625), ("½(L1+2)", 6.0), ("½π", np.pi / 2), ("5½/2", 2.75)],
+)  # fmt: skip
+def test_a_fraction_that_is_one_letter_is_a_number(text, value):
+    """2½ is two and a half; its digits alone would be 21/2."""
+    table = f"|theta|d|a|alpha|\n|--|--|--|--|\n|q1|{text}|0|90°|\n|q2|L1|0|0|"
+    made = robokin.from_table(table, values={"L1": 10}, length="m")
+    assert made.joints[0].d == pytest.approx(value, abs=1e-15)
+    with pytest.raises(robokin.InputError, match="L1"):
+        robokin.from_table(table.replace(text, "L1½"), values={"L1": 10}, length="m")
+
+
+@pytest.mark.parametrize("factor", ["   1.0e+03 *", "1.0e-3 ×", "1e+03  *"])
+def test_a_common_factor_is_not_passed_over(factor):
+    """As MATLAB prints a matrix with small and large numbers."""
+    text = f"{factor}\ntheta  d  a  alpha\n0  0.4000  0  0.0900\n0  0  0.3000  0\n"
+    with pytest.raises(robokin.InputError, match="found the factor"):
+        robokin.from_table(text, types="RR", angle="deg")
+
+
 def test_methods_are_the_functions():
     robot = robokin.load("puma560")
     q = robot.poses["home"]
