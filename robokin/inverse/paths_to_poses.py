@@ -266,4 +266,6 @@ def _by_tool(robot: Robot, start: Array, leg: Leg, steps: int, manner: Manner, p
         path = timed_curve(robot, start, curve, manner.timing, steps, manner.limits, follows)
     blends = curve.blends() if isinstance(curve, RoundedCurve) else ()
     passed = tuple(one for one in blends if one.fraction <= path.fraction)
+    if (follows or line_task(robot)) == "position":  # how the curve turns is nothing that the tool does
+        return replace(path, kind=manner.way, blends=tuple(replace(one, angle=0.0) for one in passed))
     return replace(path, kind=manner.way, blends=passed, choices=choices(curve, point))

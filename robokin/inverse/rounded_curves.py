@@ -53,7 +53,8 @@ class PathBlend:
     """A point that a path passes by.
 
     point: which one, from 1; fraction: of the path (s) where it is passed; begins, ends: where the blend does;
-    distance: how far from the point the tool is where it is nearest [m]; angle: between the orientations there [rad].
+    distance: how far from the point the tool is where it is nearest [m]; angle: between the orientations there [rad],
+    0 where the position alone is followed.
     """
 
     point: int

@@ -247,7 +247,9 @@ def _branched() -> dict[str, Schema]:
             "begins": number("Where the blend begins [1].", 0.0),
             "ends": number("Where it ends [1].", 0.0),
             "distance": number("How far from the point the tool passes [length].", 0.0),
-            "angle": number("By how much its orientation differs from the point's there [angle].", 0.0),
+            "angle": number(
+                "By how much its orientation differs from the point's there, 0 where that is not followed [angle].", 0.0
+            ),
         },
     )
     return {

@@ -302,6 +302,16 @@ def test_corners_are_rounded(call):
     )
 
 
+def test_of_a_position_that_is_followed_no_turn_is_said(call):
+    """Turns of the goals' poses are nothing that the tool does: it is turned as the joints have it."""
+    straight = call("path", "planar2r", "--from", "0,90", "--to", "180,90", "--line", "--json")
+    assert "half a turn" not in straight.err
+    assert not straight.json.get("choices")
+    path = ["path", "planar2r", "--from", "30,40", "--to", "60,30", "--to", "30,40", "--line", "--blend-radius", "0.1"]
+    assert call(*path, "-f", "csv").err == "robokin: passes point 1 at 0.0375 m\n"
+    assert call(*path, "--json").json["blends"][0]["angle"] == 0.0
+
+
 def test_half_a_turn_is_said(call):
     document = call("path", "ur5e", "--from", "0,-90,90,0,90,0", "--pose", "Trans(-491.8,-133.3,487.8) RPY(90,0,90)",
                     "--line", "--json").json  # fmt: skip
