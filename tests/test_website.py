@@ -225,3 +225,20 @@ def test_what_a_style_sheet_fetches_is_looked_at(tmp_path):
         "style.css: no.png: there is no such file",
         "style.css: https://example.org/f.woff2: fetched from elsewhere",
     ]
+
+
+def test_a_lecture_leads_to_itself_and_to_its_robots_in_the_playground():
+    found = {}
+    for path in (docs_pages.DOCS / "lectures").glob("*.md"):
+        text = path.read_text(encoding="utf-8")
+        found[path.stem] = docs_pages.entries_of(text)
+        page = docs_pages.with_playground(text, path.stem)
+        addresses = re.findall(r'<a href="../../playground/index.html#([^"]+)">', page)
+        assert addresses[0] == f"r={found[path.stem][0]}&amp;t=lectures&amp;l={path.stem}"
+        assert addresses[1:] == [f"r={name}" for name in found[path.stem]]
+        assert page.partition("\n")[0] == text.partition("\n")[0] and page.endswith(text.partition("\n\n")[2])
+    # As `robokin list lucia` and `robokin list ahmed` print them; the third lecture has Craig's arm alone.
+    assert found["lucia"] == ["anthropomorphic", "planar3r"] and found["transforms"] == ["puma560-craig"]
+    assert found["ahmed"] == ["fanuc", "planar3r-brac", "scara", "scorbot"]
+    assert {"human-hand", "thumb", "human-body", "car"} <= set(found["laschi"])
+    assert {"four-bar", "sarrus", "planar2r"} <= set(found["yim"])

@@ -169,8 +169,10 @@ def library() -> dict[str, object]:
 
 
 def lectures() -> list[dict[str, object]]:
-    """The pages of the lectures: their titles, and their parts in order, text as HTML and commands."""
+    """The pages of the lectures: their titles, the robots of their commands, and their parts in order, text as HTML and
+    commands."""
     from documentation import steps
+    from website.docs_pages import entries_of
 
     found = []
     for name in LECTURES:
@@ -190,11 +192,12 @@ def lectures() -> list[dict[str, object]]:
         for part in parts:
             if "html" in part:
                 part["html"] = re.sub(r"</?a\b[^>]*>", "", part["html"])
-        found.append({"id": name, "title": title, "parts": [part for part in parts if part]})
+        kept = [part for part in parts if part]
+        found.append({"id": name, "title": title, "robots": entries_of(text), "parts": kept})
     return found
 
 
 if __name__ == "__main__":
-    # The engine, and what the tests take for the commands of a page.
-    sys.path[:0] = [str(HERE), str(ROOT / "tests")]
+    # The engine, what the tests take for the commands of a page, and what the site does.
+    sys.path[:0] = [str(HERE), str(ROOT / "tests"), str(ROOT / "docs")]
     main()

@@ -68,20 +68,26 @@ async function picture(more = "") {
   const command = `plot ${robot()}${more} -o picture.html`, page = await ask("run", command, 80);
   if (!page.files["picture.html"]) return;
   drawn = new TextDecoder().decode(page.files["picture.html"]);
+  // Its sliders give the pose of what is answered next.
+  const there = new Promise((done) => $("picture").addEventListener("load", done, {once: true}));
   $("picture").srcdoc = drawn;
+  await there;
+  taken();
 }
 // The joint values that the sliders have, as a command line has them; "" without sliders.
 function sliders() {
   const arm = $("picture").contentWindow?.robokin;
   return arm?.q && arm.n ? arm.q().map((v) => String(+v.toFixed(6))).join(",") : "";
 }
-setInterval(() => {
-  const now = sliders();
-  if (now === pose) return;
+// The pose of the sliders into the form; whether it is another one.
+function taken() {
+  const now = sliders(), field = $("form").elements.q;
+  if (now === pose) return false;
   pose = now;
-  const field = $("form").elements.q;
-  if (field && !field.dataset.own && now) { field.value = now; if (tab === "pose") soon(); else shown(); }
-}, 150);
+  if (field && !field.dataset.own && now) { field.value = now; shown(); }
+  return Boolean(field && !field.dataset.own && now);
+}
+setInterval(() => { if (taken() && tab === "pose") soon(); }, 150);
 
 // The questions: each is a form that makes a command line.
 const numbers = ["robot", "tree"];
@@ -102,17 +108,20 @@ const QUESTIONS = {
     line: (v) => `jacobian ${robot()}${values(v.q)}${v.frame === "tool" ? " --frame tool" : ""}`},
   singular: {title: "Singularities", kinds: numbers, fields: [], line: () => `singular ${robot()}`},
   steps: {title: "Worked steps", kinds: numbers, fields: [
-    {id: "what", label: "Of", choices: ["the pose, in symbols", "the pose, in numbers", "all solutions"], short: true},
-    {...q, of: ["the pose, in numbers"]}, {...target, of: ["all solutions"]}],
+    {id: "what", label: "Of", choices: ["the pose, in symbols", "the pose, in symbols with these lengths", "the pose, frame after frame", "all solutions"]},
+    {...q, of: ["the pose, frame after frame"]}, {...target, of: ["all solutions"]}],
     before: fromSliders,
     line: (v) => v.what === "all solutions" ? `ik ${robot()}${aim(v.target)} --explain`
-      : `fk ${robot()} --symbolic${v.what === "the pose, in numbers" ? " --numbers" + values(v.q) : ""}`},
+      : v.what === "the pose, frame after frame" ? `fk ${robot()}${values(v.q)} --frames`
+      : `fk ${robot()} --symbolic${v.what === "the pose, in symbols" ? "" : " --numbers"}`},
   workspace: {title: "Workspace", kinds: ["robot"], fields: [{id: "page", label: "As", choices: ["text", "a turning picture"], short: true}],
     line: (v) => `workspace ${robot()}${v.page === "text" ? "" : " --plot workspace.html"}`},
   freedoms: {title: "Freedoms", kinds: [...numbers, "mechanism", "wheeled"], fields: [], line: () => `dof ${robot()}`},
   table: {title: "Table", kinds: [...numbers, "mechanism", "wheeled"], fields: [], line: () => `show ${robot()}`},
   mark: {title: "Mark an answer", kinds: [...numbers, "mechanism"], fields: [
-    {id: "what", label: "Question", choices: ["pose", "joint values", "Jacobian", "table", "freedoms"], short: true},
+    {id: "what", label: "Question", choices: ["pose", "joint values", "Jacobian", "table", "freedoms"], short: true,
+      mechanism: ["freedoms"]},
+    {id: "tell", label: "Tell me", choices: ["what is right", "how far I am off", "what is wrong", "right or wrong"], short: true},
     {...q, of: ["pose", "Jacobian"]}, {...target, of: ["joint values"]},
     {id: "given", label: "Your answer: X,Y,Z, a matrix or an expression", of: ["pose"], wide: true},
     {id: "angles", label: "Your answer: joint values", of: ["joint values"], wide: true},
@@ -124,14 +133,28 @@ const QUESTIONS = {
   command: {title: "Command line", kinds: null, fields: [{id: "words", label: "A command of robokin; the description above is robot.yaml", wide: true}],
     line: (v) => v.words.replace(/^\s*robokin\s+/, "") || "--help"},
 };
+const TOLD = {"how far I am off": " --feedback distance", "what is wrong": " --feedback part", "right or wrong": " --feedback verdict"};
 function mark(v) {
-  const said = (words) => quoted((words || "").trim() || " ");
-  if (v.what === "joint values") return `check ik ${robot()}${aim(v.target)} --q=${said(v.angles)}`;
-  if (v.what === "Jacobian") return `check jacobian ${robot()}${values(v.q)} --expect=${said(v.rows)}`;
-  if (v.what === "table") return `check dh ${FILE} --against ${said(v.against)}`;
-  if (v.what === "freedoms") return `check dof ${robot()} --expect=${said(v.count)}`;
-  return `check fk ${robot()}${values(v.q)} --expect=${said(v.given)}`;
+  const said = (words) => quoted((words || "").trim() || " "), told = TOLD[v.tell] || "";
+  if (v.what === "joint values") return `check ik ${robot()}${aim(v.target)} --q=${said(v.angles)}${told}`;
+  if (v.what === "Jacobian") return `check jacobian ${robot()}${values(v.q)} --expect=${said(v.rows)}${told}`;
+  if (v.what === "table") return `check dh ${FILE} --against ${said(v.against)}${told}`;
+  if (v.what === "freedoms") return `check dof ${robot()} --expect=${said(v.count)}${told}`;
+  return `check fk ${robot()}${values(v.q)} --expect=${said(v.given)}${told}`;
 }
+// Where a marked answer is worked out: another question, with what was typed.
+const WORKED = {pose: ["steps", "the pose, frame after frame"], "joint values": ["steps", "all solutions"], Jacobian: ["jacobian"], freedoms: ["freedoms"]};
+$("explain").addEventListener("click", async () => {
+  const typed = given(), [name, what] = WORKED[typed.what];
+  choose(name, false);
+  for (const [id, value] of Object.entries({...typed, what})) {
+    const field = $("form").elements[id];
+    if (field && value) Object.assign(field, {value}).dataset.own = "1";
+  }
+  fitting();
+  await answer();
+  $(`tab-${name}`).focus();
+});
 const OWN_TIME = new Set(["solutions", "workspace", "singular", "mark", "lectures", "command", "steps"]);
 
 // The pose of the sliders as a target, where nobody has typed one.
@@ -183,7 +206,7 @@ function choose(name, now = true) {
     const label = make("label", form, field.label, {className: field.short ? "short" : field.wide ? "wide" : ""});
     if (field.choices) {
       const select = make("select", label, "", {name: field.id});
-      field.choices.forEach((choice) => make("option", select, choice));
+      (field[kind] || field.choices).forEach((choice) => make("option", select, choice));
       select.addEventListener("change", () => { fitting(); shown(); if (!OWN_TIME.has(tab)) soon(); });
     } else {
       const input = make("input", label, "", {name: field.id, spellcheck: false, autocomplete: "off", autocapitalize: "off"});
@@ -195,6 +218,7 @@ function choose(name, now = true) {
   const isLecture = name === "lectures";
   $("lecture").hidden = !isLecture;
   $("line").hidden = $("answer").hidden = isLecture;
+  $("explain").hidden = true;
   if (isLecture) return lectures(form);
   make("button", form, "Ask", {type: "submit"});
   if (question.says) make("p", form, question.says);
@@ -247,6 +271,7 @@ async function answer() {
     aged();
     Object.assign($("answer").dataset, {of: `robokin ${words}`, status: found.status});
     $("note").textContent = found.note;
+    $("explain").hidden = tab !== "mark" || found.status === 2 || !WORKED[given().what];
     files(found.files);
     if (view !== undefined && found.status !== 2) await picture(view);
   } catch (error) {
@@ -280,7 +305,7 @@ $("stop").addEventListener("click", async () => {
 });
 
 // The lectures: their pages, with each command to run where it stands.
-let pages = null;
+let pages = null, page = "";
 async function lectures(form) {
   pages ||= await (await fetch("lectures.json")).json();
   if (tab !== "lectures") return;
@@ -288,11 +313,21 @@ async function lectures(form) {
   const label = make("label", form, "Lecture"), select = make("select", label, "", {name: "lecture"});
   pages.forEach((page) => make("option", select, page.title, {value: page.id}));
   select.addEventListener("change", () => lecture(select.value));
-  lecture(pages[0].id);
+  if (!pages.some(({id}) => id === page)) page = pages[0].id;
+  select.value = page;
+  // What was run on a page stays there while its robots are looked at.
+  if ($("lecture").dataset.page !== page) lecture(page);
 }
 function lecture(id) {
-  const box = $("lecture");
-  box.replaceChildren();
+  const box = $("lecture"), robots = document.createElement("p");
+  page = box.dataset.page = id;
+  box.replaceChildren(robots);
+  robots.textContent = "Its robots and mechanisms, to be changed and asked about: ";
+  for (const name of pages.find((each) => each.id === id).robots)
+    make("button", robots, name, {type: "button"}).addEventListener("click", async () => {
+      await load(name);
+      $("text-title").scrollIntoView();
+    });
   for (const part of pages.find((page) => page.id === id).parts) {
     if (part.html) { make("div", box).innerHTML = part.html; continue; }
     const step = make("div", box, "", {className: "step"});
@@ -385,11 +420,13 @@ async function link() {
   } else parts.set("r", original.id);
   if (pose) parts.set("q", pose);
   if (tab !== "pose") parts.set("t", tab);
+  if (tab === "lectures") parts.set("l", page);
   return `${location.href.split("#")[0]}#${parts}`;
 }
 async function follow() {
   const parts = new URLSearchParams(location.hash.slice(1)), y = parts.get("y");
-  if (QUESTIONS[parts.get("t")]) tab = parts.get("t");
+  page = parts.get("l") || page;
+  if (QUESTIONS[parts.get("t")]) choose(parts.get("t"), false);
   let moved = "";
   try {
     if (y) {
@@ -409,12 +446,15 @@ async function follow() {
     set();
   }
   if (moved) state(moved, true);
+  if (parts.get("t") === "lectures") $("ask").scrollIntoView();
 }
 async function load(id, now = true) {
   const value = await ask("description", id);
   original = {id, text: value};
   $("pick").value = id;
   setText(value);
+  // What was typed for another robot goes with it.
+  if (tab !== "command") choose(tab, false);
   if (now) await read();
 }
 $("load").addEventListener("click", () => load($("pick").value.trim()).then(() => state(""), () => state(`There is no robot or mechanism ${$("pick").value} in the library.`, true)));

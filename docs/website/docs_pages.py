@@ -11,6 +11,8 @@ import re
 import shutil
 from pathlib import Path
 
+from robokin.formats.library import library_names
+
 ROOT = Path(__file__).resolve().parent.parent.parent
 DOCS = ROOT / "docs"
 
@@ -26,6 +28,9 @@ PROGRAMS = ("website", "playground")
 LINK = re.compile(r"(?<!\\)(\]\()([^)\s#:]+)((?:#[^)]*)?\))")
 """A link within the project."""
 
+CONSOLE = re.compile(r"^```console\n(.*?)^```", re.M | re.S)
+"""A block of commands with what they print."""
+
 FENCE = re.compile(r"(^ *```.*?^ *```)", re.M | re.S)
 
 
@@ -40,6 +45,9 @@ def write_docs(source: Path, playground: bool) -> None:
     for path in sorted(DOCS.rglob("*")):
         if path.is_file() and path.relative_to(DOCS).parts[0] not in PROGRAMS:
             _write(path, source / path.relative_to(ROOT))
+    if playground:
+        for page in sorted((source / "docs" / "lectures").glob("*.md")):
+            page.write_text(with_playground(page.read_text(encoding="utf-8"), page.stem), encoding="utf-8")
     for name in TOP:
         _write(ROOT / name, source / name)
     index = source / "docs" / "index.md"
@@ -88,6 +96,26 @@ def on_site(text: str, page: Path) -> str:
 
     parts = FENCE.split(text)
     return "".join(part if k % 2 else LINK.sub(link, part) for k, part in enumerate(parts))
+
+
+def entries_of(page: str) -> list[str]:
+    """The robots and mechanisms of the library that a page's commands name or list, in the page's order."""
+    words = []
+    for block in CONSOLE.findall(page):
+        for line in block.splitlines():
+            # Of what is printed, the names that `robokin list` has at the start of its lines.
+            words += line.split() if line.startswith("$ ") else re.findall(r"^\S+(?=   )", line)
+    known = set(library_names())
+    return [name for name in dict.fromkeys(words) if name in known]
+
+
+def with_playground(page: str, lecture: str) -> str:
+    """A lecture's page with links below its title: to itself in the playground, and to its robots there."""
+    title, _, rest = page.partition("\n\n")
+    address, names = "../../playground/index.html#r=", entries_of(page)
+    links = ", ".join(f'<a href="{address}{name}">{name}</a>' for name in names)
+    own = f'<a href="{address}{names[0]}&amp;t=lectures&amp;l={lecture}">Run these commands in the playground</a>'
+    return f"{title}\n\n{own}, or change a robot of it there and ask about it: {links}.\n\n{rest}"
 
 
 def notebook_text(notebook: dict[str, object]) -> str:
