@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import re
 
@@ -228,6 +229,9 @@ def test_the_colour_of_a_solution_is_one(tmp_path):
     pytest.importorskip("matplotlib")
     still = arm_picture(scene, "svg").decode()
     assert all(f"fill: {c}" in still for c in colours), "the still's key has them"
+    pillow = pytest.importorskip("PIL.Image")
+    seen = {c for _, c in pillow.open(io.BytesIO(arm_picture(scene, "png"))).convert("RGB").getcolors(1 << 24)}
+    assert {tuple(int(c[k : k + 2], 16) for k in (1, 3, 5)) for c in colours} <= seen
 
 
 @needs_browser
