@@ -58,7 +58,7 @@ async function read() {
 }
 
 // The picture: the page that `robokin plot` writes, in a frame.
-let drawn = "", pose = "";
+let drawn = "", pose = "", fresh = true;  // fresh: another robot, whose sliders begin where its picture has them
 async function picture(more = "") {
   if (kind === "wheeled") {
     drawn = "";
@@ -69,10 +69,16 @@ async function picture(more = "") {
   if (!page.files["picture.html"]) return;
   drawn = new TextDecoder().decode(page.files["picture.html"]);
   // Its sliders give the pose of what is answered next.
-  const there = new Promise((done) => $("picture").addEventListener("load", done, {once: true}));
+  const before = fresh || more ? [] : pose.split(",").map(Number), there = new Promise((done) => $("picture").addEventListener("load", done, {once: true}));
   $("picture").srcdoc = drawn;
   await there;
+  fresh = false;
+  moveTo(before);
   taken();
+}
+function moveTo(q) {
+  const arm = $("picture").contentWindow?.robokin;
+  if (arm?.setQ && arm.n === q.length && q.every(Number.isFinite)) arm.setQ(q);
 }
 // The joint values that the sliders have, as a command line has them; "" without sliders.
 function sliders() {
@@ -433,24 +439,21 @@ async function follow() {
       const bytes = Uint8Array.from(atob(y.replace(/-/g, "+").replace(/_/g, "/")), (c) => c.charCodeAt(0));
       setText(new TextDecoder().decode(await packed(bytes, DecompressionStream)));
       original = {id: "", text: ""};
+      fresh = true;
     } else await load(parts.get("r") || FIRST, false);
   } catch {
     moved = "The link is damaged; a robot of the library is shown instead.";
     await load(FIRST, false);
   }
   await read();
-  const wanted = (parts.get("q") || "").split(",").map(Number);
-  if (parts.get("q") && wanted.every(Number.isFinite)) {
-    const set = () => { const arm = $("picture").contentWindow?.robokin; if (arm?.n === wanted.length) arm.setQ(wanted); };
-    $("picture").addEventListener("load", set, {once: true});
-    set();
-  }
+  if (parts.get("q") && valid) moveTo(parts.get("q").split(",").map(Number));
   if (moved) state(moved, true);
   if (parts.get("t") === "lectures") $("ask").scrollIntoView();
 }
 async function load(id, now = true) {
   const value = await ask("description", id);
   original = {id, text: value};
+  fresh = true;
   $("pick").value = id;
   setText(value);
   // What was typed for another robot goes with it.

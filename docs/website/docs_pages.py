@@ -115,7 +115,7 @@ def with_playground(page: str, lecture: str) -> str:
     address, names = "../../playground/index.html#r=", entries_of(page)
     links = ", ".join(f'<a href="{address}{name}">{name}</a>' for name in names)
     own = f'<a href="{address}{names[0]}&amp;t=lectures&amp;l={lecture}">Run these commands in the playground</a>'
-    return f"{title}\n\n{own}, or change a robot of it there and ask about it: {links}.\n\n{rest}"
+    return f"{title}\n\n{own}, or change a robot there and ask about it: {links}.\n\n{rest}"
 
 
 def notebook_text(notebook: dict[str, object]) -> str:

@@ -325,6 +325,14 @@ def test_another_robot_is_asked_about_with_its_own_values(address):
     run("$('pick').value = 'planar2r'; $('load').click();")
     run("await until(() => text('command').includes('planar2r')); await settled();")
     assert run("return [text('command'), $('answer').dataset.status]") == ["robokin jacobian planar2r --q=0,0", "0"]
+    # A change of the description leaves the sliders where they are; those of another robot begin anew.
+    run(
+        "arm().setQ([30, 40]); await until(() => $('form').elements.q.value === '30,40');"
+        "playground.setText(playground.text().replace('a1: 1', 'a1: 2')); await playground.read(); await settled();"
+    )
+    assert run("return text('command')") == "robokin jacobian robot.yaml --q=30,40"
+    run("$('pick').value = 'planar2r'; $('load').click();")
+    run("await until(() => text('command') === 'robokin jacobian planar2r --q=0,0'); await settled();")
     # An address that differs in its question alone is followed too.
     run(
         "location.hash = '#r=planar2r&t=freedoms'; await until(() => text('command').includes('dof')); await settled();"
