@@ -93,6 +93,11 @@ def follow_curve(
     return path_of_rows(robot, t[:m], s[:m], rows, track.fraction, track.event, len(s) - 1, counted)
 
 
+def rows_from(robot: Robot, q: Array, curve: ToolCurve, s: Array, task: PathTask) -> Array:
+    """Rows (k, n) at parts s (m,) of the way from q (n,) at the first of them, as far as they can be followed."""
+    return _track(robot, follower_of(robot, curve.at, task, s), s, q, None, False, task).rows
+
+
 def branch_starts(robot: Robot, curve: ToolCurve, task: PathTask) -> Array:
     """Where branches along a curve may begin: configurations (k, n) [rad | m], also outside the limits.
 

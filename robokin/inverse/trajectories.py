@@ -22,8 +22,9 @@ from numpy.typing import ArrayLike
 from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.expected import expect_choice, expect_finite, expect_flag, expect_number, expect_numbers, expect_whole
+from robokin.inverse.closer_looks import UnitRates, demand, looked_at_closely
 from robokin.inverse.follow import MOST
-from robokin.inverse.followed_curves import follow_curve
+from robokin.inverse.followed_curves import follow_curve, rows_from
 from robokin.inverse.joint_paths import Event, Path, PathTask, PathTurn, interpolate_joints, line_task, singularities
 from robokin.inverse.joint_rates import curve_rates, spare_motions
 from robokin.inverse.time_profiles import BLEND, MotionLimits, Passing, Profile, timed_move
@@ -132,7 +133,7 @@ class Timing:
 def timed_curve(
     robot: Robot, first: Array, curve: ToolCurve, timing: Timing, steps: int, limits: bool, task: PathTask | None
 ) -> Path:
-    """The tool along a curve from where it is at joint values first (n,), in time: see `follow_curve`, `timed_line`."""
+    """The tool along a curve from where it is at joint values first (n,), in time: see `follow_curve`."""
     chosen = line_task(robot) if task is None else task
     bounded = bool(np.isfinite([timing.limits.velocity, timing.limits.acceleration]).any())
     # Of few rows none may be where a joint is fastest; all of them are among those that are looked at.
@@ -141,27 +142,35 @@ def timed_curve(
     if bounded and len(curve.places):
         tau = np.union1d(tau, time_of_parts(timing.profile, curve.places))
         tau = tau[np.diff(tau, prepend=-1.0) > TOGETHER]
-        looked_at = len(tau) - 1
-    path = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
+
+    def followed(tau: Array) -> tuple[Path, UnitRates]:
+        path = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
+        return path, unit_rates(path, curve, timing.profile, chosen)
+
+    def look(tau: Array, q: Array) -> UnitRates:
+        s = unit_law(timing.profile, tau)[0]
+        rows = rows_from(robot, q, curve, s, chosen)
+        m = len(rows)
+        return unit_rates(replace(path, t=tau[:m], s=s[:m], q=rows), curve, timing.profile, chosen)
+
+    path, rates = followed(tau)
+    seen = looked_at_closely(rates, timing.limits, timing.profile, look) if bounded else rates
     if timing.rate is not None and timing.duration is not None and bounded:
-        least = timed_curve(robot, first, curve, replace(timing, duration=None), steps, limits, task).duration
-        assert least is not None
+        least = seen.demand(timing.limits)
         if timing.duration < least * (1.0 - LITTLE):
             raise too_short(timing.duration, least)
-        path = timed_line(path, curve, timing.profile, motion_limits(robot, None, None), timing.duration, chosen)
+        whole = timing.duration
     else:
-        path = timed_line(path, curve, timing.profile, timing.limits, timing.duration, chosen)
-    if timing.rate is None and looked_at == steps:
-        return path
-    duration, whole = timing.duration, path.duration
-    free = motion_limits(robot, None, None)
+        whole = duration_within(seen, timing.limits, timing.duration)
+    if timing.rate is None and len(tau) == steps + 1:
+        return in_time(path, rates, whole)
+    duration = timing.duration
     for _ in range(LONGER):
-        assert whole is not None
         tau = rows_since(timing, whole, steps) / whole
         tau[-1] = 1.0
-        again = follow_curve(robot, first, curve, tau, unit_law(timing.profile, tau)[0], limits, chosen)
-        timed = timed_line(again, curve, timing.profile, free, whole, chosen)
-        over = _over(timed, timing.limits)
+        timed = in_time(*followed(tau), whole)
+        assert timed.velocity is not None and timed.acceleration is not None
+        over = demand(timed.velocity, timed.acceleration, timing.limits)
         if over <= 1.0 + (EXACT if duration is None else LITTLE):
             return timed
         # Rows of a rate are at none of the places that were looked at, and may be faster by a little.
@@ -174,14 +183,6 @@ def timed_curve(
 def too_short(duration: float, least: float) -> InputError:
     """What is said of a duration below the least within the limits [s]."""
     return InputError(f"found a duration of {duration:g} s, expected at least {least:.6g} s within the limits")
-
-
-def _over(path: Path, limits: MotionLimits) -> float:
-    """By what factor a path in time must be slower to keep to limits at its rows."""
-    assert path.velocity is not None and path.acceleration is not None
-    faster = float(np.max(np.abs(path.velocity) / limits.velocity, initial=0.0))
-    harder = float(np.max(np.abs(path.acceleration) / limits.acceleration, initial=0.0))
-    return max(faster, math.sqrt(harder))
 
 
 def reorientation(robot: Robot, first: Array, last: Array, timing: Timing | None, steps: int) -> Path:
@@ -211,18 +212,8 @@ def rows_since(timing: Timing, duration: float, steps: int) -> Array:
     return np.append(0.0, whole[whole > duration * 1e-9])
 
 
-def timed_line(
-    path: Path,
-    curve: ToolCurve,
-    profile: Profile,
-    limits: MotionLimits,
-    duration: float | None,
-    task: PathTask,
-) -> Path:
-    """A path of the tool, whose rows are at the profile's parts of the way, in time: in the least that limits allow.
-
-    Raises InputError for a duration that is too short for them, and where a singular configuration lets none be enough.
-    """
+def unit_rates(path: Path, curve: ToolCurve, profile: Profile, task: PathTask) -> UnitRates:
+    """How fast joints are at the rows of a path of the tool. Raises InputError where a singular one has no bound."""
     tau = path.t
     q1, q2 = curve_rates(path, curve, task)
     _, s1, s2 = unit_law(profile, tau)
@@ -235,18 +226,26 @@ def timed_line(
     if unbounded.any():
         singular = f"where the path is singular, at {path.s[int(np.argmax(unbounded))]:.6g} of it"
         raise InputError(f"a joint's velocity has no bound {singular}, expected a path beside that")
-    if len(tau) > 2 and (spare := spare_motions(path, task)) is not None:
-        # A joint is to spare: what it does from row to row the line does not say, and is read off the rows.
-        speed = speed + np.einsum("mij,mj->mi", spare, np.gradient(path.q, tau, axis=0, edge_order=2))
-        push = np.gradient(speed, tau, axis=0, edge_order=2)
-    least = max(
-        float(np.max(np.abs(speed) / limits.velocity, initial=0.0)),
-        math.sqrt(float(np.max(np.abs(push) / limits.acceleration, initial=0.0))),
-    )
-    if duration is not None and duration < least * (1.0 - 1e-9):
+    spare = spare_motions(path, task) if len(tau) > 2 else None
+    if spare is None:
+        return UnitRates(tau, path.q, speed, push)
+    # A joint is to spare: what it does from row to row the line does not say, and is read off the rows.
+    speed = speed + np.einsum("mij,mj->mi", spare, np.gradient(path.q, tau, axis=0, edge_order=2))
+    return UnitRates(tau, path.q, speed, np.gradient(speed, tau, axis=0, edge_order=2), True)
+
+
+def duration_within(rates: UnitRates, limits: MotionLimits, duration: float | None) -> float:
+    """A duration [s], or the least that limits allow, a second without. Raises InputError for one that is too short."""
+    least = rates.demand(limits)
+    if duration is not None and duration < least * (1.0 - EXACT):
         raise too_short(duration, least)
-    whole = duration if duration is not None else least if least > 0.0 else 1.0
-    return replace(path, t=tau * whole, duration=whole, velocity=speed / whole, acceleration=push / whole**2)
+    return duration if duration is not None else least if least > 0.0 else 1.0
+
+
+def in_time(path: Path, rates: UnitRates, whole: float) -> Path:
+    """A path whose rows are at parts of the time in a duration [s]."""
+    velocity, acceleration = rates.speed / whole, rates.push / whole**2
+    return replace(path, t=path.t * whole, duration=whole, velocity=velocity, acceleration=acceleration)
 
 
 def unit_law(profile: Profile, tau: Array) -> tuple[Array, Array, Array]:

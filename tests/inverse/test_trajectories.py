@@ -199,7 +199,8 @@ def test_velocities_of_a_line_are_derivatives_and_its_twist_is_straight(robot, s
     timing = Timing(motion_limits(robot, 0.4, None), profile)
     path = path_through(robot, np.array(start), [Goal(T=T)], 400, Manner("line", timing=timing))
     assert path.complete and path.kind == "line"
-    assert np.abs(path.velocity).max() == pytest.approx(0.4)
+    # It is met where a joint is fastest, which may lie between two rows.
+    assert 0.4 * (1 - 2e-3) < np.abs(path.velocity).max() <= 0.4 * (1 + 1e-9)
     step = path.t[1] - path.t[0]
     middle = (path.q[2:] - path.q[:-2]) / (2 * step)
     loose = 0.02 if robot.n == 7 else 2e-4  # a redundant arm moves by least motion from row to row
@@ -382,3 +383,26 @@ def test_limits_hold_at_every_row_of_a_line(steps, rate):
     path = path_through(robot, start, [Goal(T=T)], steps, Manner("line", timing=Timing(bounds, rate=rate)))
     assert path.complete
     assert np.abs(path.velocity).max() <= 1.0 + 1e-8 and np.abs(path.acceleration).max() <= 2.0 + 1e-8
+
+
+@pytest.mark.parametrize(
+    ("name", "start", "end"),
+    [
+        ("puma560", [0.3, -0.5, 0.9, 0.4, 0.004, 0.2], [0.1, -0.2, 0.6, 0.5, -0.12, 0.4]),
+        ("ur5e", [0.3, -1.2, 1.4, -0.5, 0.01, 0.1], [0.6, -0.9, 1.1, -0.4, -0.35, 0.3]),
+        ("planar2r", [0.2, 0.05], [1.4, 0.3]),
+        ("scara", [0.2, 0.04, 0.1, 0.0], [1.4, 0.9, 0.05, 1.0]),
+    ],
+)
+@pytest.mark.parametrize("profile", ["quintic", "trapezoidal"])
+def test_limits_of_a_line_hold_between_its_rows_beside_singularities(name, start, end, profile):
+    """Looked at by rows at fifteen times as many places, of the same path with the duration that was found."""
+    robot = robokin.load(name)
+    goals, start = [Goal(T=robokin.forward_kinematics(robot, np.array(end)))], np.array(start)
+    bounds, free = motion_limits(robot, 1.0, 4.0), motion_limits(robot, None, None)
+    path = path_through(robot, start, goals, 100, Manner("line", False, timing=Timing(bounds, profile)))
+    fine = Timing(free, profile, duration=path.duration)
+    path = path_through(robot, start, goals, 1501, Manner("line", False, timing=fine))
+    assert path.complete
+    greatest = max(np.abs(path.velocity).max(), np.sqrt(np.abs(path.acceleration).max() / 4.0))
+    assert 0.99 < greatest < 1.001
