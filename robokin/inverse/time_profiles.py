@@ -41,6 +41,9 @@ SHAPES = {"cubic": (0.0, 0.0, 3.0, -2.0, 0.0, 0.0), "quintic": (0.0, 0.0, 0.0, 1
 BLEND = 0.2
 """A blend takes this part of the shorter of its two segments, where nothing says otherwise."""
 
+HAIR = 1e-6
+"""Points [rad | m] that are nearer together are passed by one blend: blends between them had no time."""
+
 ENOUGH = 1e-9
 """How much shorter, relatively, than the least duration a wanted one may be: rounding."""
 
@@ -205,7 +208,7 @@ def _blends(points: Array, limits: MotionLimits, part: float) -> TimedCurve:
     A blend takes the same part of the time on both sides of its point, and passes by at an eighth of its duration times
     the change of velocity.
     """
-    points, h = _chords(points, limits)
+    points, h = _chords(_apart(points), limits)
     if not len(h):
         return _curve([0.0], [], points)
     padded = np.concatenate([[np.inf], h, [np.inf]])
@@ -233,6 +236,15 @@ def _blends(points: Array, limits: MotionLimits, part: float) -> TimedCurve:
         q, v = q + 0.5 * (v + after) * blend[k], after
         times.append(start + blend[k])
     return _within(_curve(times, pieces, points), limits)
+
+
+def _apart(points: Array) -> Array:
+    """The points without those between that are a hair from the one before, or from the last."""
+    kept = [points[0]]
+    for point in points[1:-1]:
+        if min(np.max(np.abs(point - kept[-1])), np.max(np.abs(point - points[-1]))) > HAIR:
+            kept.append(point)
+    return np.array([*kept, points[-1]])
 
 
 def _piece(q: Array, velocity: Array, acceleration: Array | float = 0.0) -> Array:

@@ -406,3 +406,13 @@ def test_limits_of_a_line_hold_between_its_rows_beside_singularities(name, start
     assert path.complete
     greatest = max(np.abs(path.velocity).max(), np.sqrt(np.abs(path.acceleration).max() / 4.0))
     assert 0.99 < greatest < 1.001
+
+
+def test_points_a_hair_apart_are_passed_by_one_blend():
+    """The ends are kept to the last digit, whichever of two points a blend passes."""
+    way = np.array([[0.0, 0.0], [0.7, 0.3], [0.2, 0.9]])
+    hair = np.array([[0.0, 0.0], [1e-9, 0.0], [0.7, 0.3], [0.7, 0.3 + 1e-9], [0.2, 0.9 - 1e-9], [0.2, 0.9]])
+    plain, twice = (trajectory(PLANAR, q, passing="blend", max_velocity=1.0, max_acceleration=4.0) for q in (way, hair))
+    assert twice.duration == pytest.approx(plain.duration, rel=1e-6)
+    np.testing.assert_allclose(twice.q, plain.q, atol=1e-6)
+    np.testing.assert_array_equal(twice.q[[0, -1]], way[[0, -1]])
