@@ -15,7 +15,7 @@ from robokin.arrays import Array
 from robokin.inverse.joint_paths import Path, PathTask
 from robokin.inverse.tool_curves import ToolCurve
 from robokin.kinematics.jacobian import jacobian
-from robokin.kinematics.velocity import dexterity
+from robokin.kinematics.velocity import nearly_singular
 from robokin.model import Robot
 
 CLOSES = 1e-4
@@ -41,7 +41,7 @@ def curve_rates(path: Path, curve: ToolCurve, task: PathTask) -> tuple[Array, Ar
     """q' and q'' (m, n) by the part of the way, at each row; inf where the configuration is singular."""
     robot, s, q = path.robot, path.s, path.q
     first = _joint_rates(robot, q, curve.twist(s), task)
-    singular = np.flatnonzero(dexterity(robot, q, "position" if task == "position" else None)[0] < BESIDE)
+    singular = np.flatnonzero(nearly_singular(robot, q, BESIDE, "position" if task == "position" else None))
     step = DIFFERENCE / np.maximum(1.0, np.max(np.abs(first), axis=1, keepdims=True))
     step[~np.isfinite(step)] = DIFFERENCE
     with np.errstate(invalid="ignore"):

@@ -19,6 +19,7 @@ from robokin.inverse.time_profiles import MotionLimits, timed_move
 from robokin.inverse.timed_curves import TimedCurve
 from robokin.inverse.tool_curves import CircularArc
 from robokin.inverse.trajectories import Timing, motion_limits, row_times, trajectory, unit_law
+from robokin.kinematics.velocity import dexterity, nearly_singular
 
 FREE = MotionLimits(np.full(3, np.inf), np.full(3, np.inf))
 PROFILES = ("cubic", "quintic", "trapezoidal")
@@ -416,3 +417,15 @@ def test_points_a_hair_apart_are_passed_by_one_blend():
     assert twice.duration == pytest.approx(plain.duration, rel=1e-6)
     np.testing.assert_allclose(twice.q, plain.q, atol=1e-6)
     np.testing.assert_array_equal(twice.q[[0, -1]], way[[0, -1]])
+
+
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "scara", "planar2r", "planar3r", "panda"])
+@pytest.mark.parametrize("task", [None, "position"])
+def test_nearly_singular_is_what_dexterity_says(name, task):
+    robot = robokin.load(name)
+    rng = np.random.default_rng(1)
+    quarters = rng.integers(-2, 3, (150, robot.n)) * np.pi / 2
+    q = quarters + rng.normal(size=quarters.shape) * 10.0 ** rng.uniform(-8, 0, (150, 1))
+    for below in (1e-5, 1e-2):
+        expected = dexterity(robot, q, task)[0] < below
+        np.testing.assert_array_equal(nearly_singular(robot, q, below, task), expected)
