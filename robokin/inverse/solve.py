@@ -141,8 +141,9 @@ def _made(
     """The result of an answer, when it is looked at."""
     question = Question(robot, answer.T, "pose", answer.limits, hold)
     if not answer.reached:
-        how = answer.limits, near, method, "pose", answer.most, seed, False, hold or None, True
-        return answer.unreached(question, lambda: solve_many(robot, answer.T, *how)[0])
+        rest: dict[str, Any] = {"most": answer.most, "seed": seed, "hold": hold or None, "motions": True}
+        blocks = partial(solve_many, robot, answer.T, answer.limits, near, method, **rest)
+        return answer.unreached(question, lambda: blocks()[0])
     return answer.result(question) if part is None else whole_result(robot, part, answer.result, question)
 
 
