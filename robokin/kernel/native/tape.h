@@ -55,7 +55,7 @@ enum Operation {
 #define CLEARLY_COMPLEX 1e-3
 
 /* What stands for the number of solutions where it is clear that there is none. */
-#define NONE_AT_ALL -1
+#define NONE_AT_ALL (-1)
 
 /* Square of a lever below which the arrays take further steps (robokin's LOOSE). */
 #define LEAST_LEVER 1e-12
