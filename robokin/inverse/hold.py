@@ -15,8 +15,9 @@ from __future__ import annotations
 import math
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cache, cached_property, partial
+from typing import Any
 
 import numpy as np
 
@@ -78,6 +79,10 @@ class HeldArm:
 
     def _part(self) -> Robot:
         return self.part
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields, for copies and pickles; code, and what the native kernel knows, are found out again."""
+        return {part.name: getattr(self, part.name) for part in fields(self)} | {"forms": None}
 
     def own(self, q: Array) -> Array:
         """Those of joint values (..., n) that are not held, (..., n - h)."""
@@ -217,9 +222,13 @@ def _held(robot: Robot, hold: dict[int, float]) -> HeldArm:
     inside = all(held_inside(robot, joint, value) for joint, value in hold.items())
     if isinstance(robot, CoupledRobot):
         part, left = drive_left(robot, hold, _name(robot, hold))
-        return HeldArm(robot.n, joints, values, inside and left, free, lambda: part)
+        return HeldArm(robot.n, joints, values, inside and left, free, partial(_given, part))
     forms = _forms(robot, tuple(hold))
     return HeldArm(robot.n, joints, values, inside, free, partial(_part_of, robot, hold), forms)
+
+
+def _given(part: Robot) -> Robot:
+    return part
 
 
 def _name(robot: Robot, hold: dict[int, float]) -> str:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import gc
+import pickle
 import weakref
 from collections import OrderedDict
 
@@ -213,6 +215,18 @@ def test_an_arm_that_is_let_go_of_meanwhile_is_given_all_the_same(monkeypatch):
     first = held_arm(robot, {2: 0.5})
     assert held_arm(robot, {2: 0.5}) is first
     assert held_arm(robot, {2: 0.5}).part.n == 6
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda arm: pickle.loads(pickle.dumps(arm))])
+def test_held_arms_are_copied_and_pickled_whatever_is_known_of_them(copied):
+    robot = robokin.load("panda")
+    for value in (0.1, 0.2, 0.3):
+        arm = held_arm(robot, {2: value})
+        T = robokin.forward_kinematics(robot, [0.1, 0.2, value, -1.5, 0.1, 1.5, 0.2])
+        assert robokin.solve_ik(robot, T, hold={2: value})
+        again = copied(arm)
+        assert np.array_equal(again.part.limits, arm.part.limits)
+        assert np.array_equal(again.whole(np.arange(6.0)), arm.whole(np.arange(6.0)))
 
 
 def test_the_order_of_what_is_held_does_not_matter():
