@@ -76,11 +76,6 @@ def described_table(text: str, wishes: Wishes) -> PastedRobot:
     Raises InputError where the text has no such table, or leaves open which joint turns and which slides.
     """
     rows, beside = pasted_rows(text, len(wishes.columns) if wishes.columns is not None else None)
-    if scaled := next((line for line in beside if SCALED.match(line.strip())), None):
-        raise InputError(
-            f"found the factor '{shown(scaled.strip())}' beside the table, expected its numbers written out: MATLAB "
-            "prints them so after `format shortG`"
-        )
     rows, headings = _headed(rows, wishes.columns)
     headings = _numbered(headings, rows)
     caption = " ".join(line[:MAX_LINE] for line in beside)
@@ -135,6 +130,15 @@ def described_table(text: str, wishes: Wishes) -> PastedRobot:
     )
     types = "".join(row.kind for row in draft.rows)
     return PastedRobot(text + "\n", types, Units(length, angle), convention, tuple(notes), missing)
+
+
+def _refuse_factors(lines: list[str]) -> None:
+    """Raise InputError for a line that is a common factor of a matrix."""
+    if scaled := next((line for line in lines if SCALED.match(line.strip())), None):
+        raise InputError(
+            f"found the factor '{shown(scaled.strip())}' beside the table, expected its numbers written out: MATLAB "
+            "prints them so after `format shortG`"
+        )
 
 
 def _headed(rows: list[PastedRow], columns: tuple[str, ...] | None) -> tuple[list[PastedRow], list[PastedHeading]]:
@@ -218,7 +222,11 @@ def _required(headings: list[PastedHeading]) -> list[PastedHeading]:
 
 
 def _assigned(lines: list[str]) -> dict[str, tuple[str, str]]:
-    """Values that stand beside a table, such as L1 = 300 mm, and their units ("" for none), by their names."""
+    """Values that stand beside a table, such as L1 = 300 mm, and their units ("" for none), by their names.
+
+    Raises InputError for a common factor, to which the table's own numbers belong.
+    """
+    _refuse_factors(lines)
     found: dict[str, set[tuple[str, str]]] = {}
     for line in lines:
         line = re.sub(r"(?<=[A-Za-z])_(?=\d)", "", plain_text(line[:MAX_LINE].replace("&=", "=")))
