@@ -97,6 +97,8 @@ class CircularArc(SlerpedTurn):
         u, v = b - a, c - a
         normal = np.cross(u, v)
         size = float(np.linalg.norm(normal))
+        if np.linalg.norm(v) <= STRAIGHT * np.linalg.norm(u) and np.any(u):
+            raise InputError("the arc ends where it begins, expected another end: a whole circle is two arcs")
         if size <= STRAIGHT * float(np.linalg.norm(u) * np.linalg.norm(v)) or not np.any(u) or not np.any(c - b):
             raise InputError("the three places of the arc are on a line, expected places on a circle")
         self.normal = normal / size

@@ -307,6 +307,11 @@ def test_three_places_on_a_line_are_no_arc(via):
         CircularArc(np.eye(4), np.array(via), robokin.transform("Trans(1, 1, 0)"))
 
 
+def test_a_whole_circle_is_two_arcs():
+    with pytest.raises(InputError, match="ends where it begins, expected another end: a whole circle is two arcs"):
+        CircularArc(np.eye(4), np.array([1.0, 0.0, 0.0]), np.eye(4))
+
+
 @pytest.mark.parametrize("steps", [1, 2, 7])
 def test_limits_of_a_line_hardly_depend_on_how_few_rows_are_asked_for(steps):
     """Limits hold at a hundred places and at every row, which may be one where a joint is a little faster still."""
