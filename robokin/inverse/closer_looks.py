@@ -68,7 +68,8 @@ def looked_at_closely(
     """The rows, and those between them that are needed to know how fast joints are within `BEYOND`.
 
     look: the rows at parts of the time (k,) of which the first has given joint values (n,), as far as they can be
-    followed. What joints to spare do is read off rows, which are too rough nearer together: these are left as they are.
+    followed and are regular. What joints to spare do is read off rows, which are too rough nearer together: these are
+    left as they are.
     """
     if rows.spare:
         return rows
@@ -88,6 +89,8 @@ def looked_at_closely(
             first, last = int(run[0]), int(run[-1]) + 1
             cuts = np.interp(np.arange(PARTS * first, PARTS * last) / PARTS, np.arange(len(rows.tau)), rows.tau)
             found.append(look(cuts, rows.q[first]))
+        if not any(len(np.setdiff1d(one.tau, rows.tau)) for one in found):
+            break
         rows = _merged(found)
     return rows
 

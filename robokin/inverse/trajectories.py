@@ -26,12 +26,12 @@ from robokin.inverse.closer_looks import UnitRates, demand, looked_at_closely
 from robokin.inverse.follow import MOST
 from robokin.inverse.followed_curves import follow_curve, rows_from
 from robokin.inverse.joint_paths import Event, Path, PathTask, PathTurn, interpolate_joints, line_task, singularities
-from robokin.inverse.joint_rates import curve_rates, spare_motions
+from robokin.inverse.joint_rates import BESIDE, curve_rates, spare_motions
 from robokin.inverse.time_profiles import BLEND, MotionLimits, Passing, Profile, timed_move
 from robokin.inverse.timed_curves import TimedCurve
 from robokin.inverse.tool_curves import ToolCurve
 from robokin.kinematics.forward import forward_kinematics
-from robokin.kinematics.velocity import dexterity
+from robokin.kinematics.velocity import dexterity, nearly_singular
 from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.model.named_values import plain_joint_values
 
@@ -150,8 +150,10 @@ def timed_curve(
     def look(tau: Array, q: Array) -> UnitRates:
         s = unit_law(timing.profile, tau)[0]
         rows = rows_from(robot, q, curve, s, chosen)
-        m = len(rows)
-        return unit_rates(replace(path, t=tau[:m], s=s[:m], q=rows), curve, timing.profile, chosen)
+        # Rates of singular rows are read off rows beside them, which a short look has not.
+        told = np.flatnonzero(~nearly_singular(robot, rows, BESIDE, "position" if chosen == "position" else None))
+        part = replace(path, t=tau[told], s=s[told], q=rows[told], fraction=1.0)
+        return unit_rates(part, curve, timing.profile, chosen)
 
     path, rates = followed(tau)
     seen = looked_at_closely(rates, timing.limits, timing.profile, look) if bounded else rates
