@@ -85,14 +85,36 @@ def test_all_instructions_and_all_numbers_of_configurations_give_the_same_digits
         for name in ("base", "avx2"):
             native.instructions(name)
             answers.append(
-                [native.pose(known, q), native.jacobian(known, q, 1.0, True), *native.errors(known, T, q, 1.0)]
+                [
+                    native.pose(known, q),
+                    native.jacobian(known, q, 1.0, True),
+                    *native.errors(known, T, q, 1.0),
+                    native.jacobian(known, q, 1.0, False),
+                ]
             )
         for a, b in zip(*answers, strict=True):
             assert a.tobytes() == b.tobytes()
         for k, one in enumerate(q):
             e, J = native.errors(known, T[k], one, 1.0)
-            alone = [native.pose(known, one), native.jacobian(known, one, 1.0, True), e, J]
-            assert all(a[k].tobytes() == b.tobytes() for a, b in zip(answers[0], alone, strict=True))
+            for name in ("base", "avx2"):
+                native.instructions(name)
+                alone = [native.pose(known, one), native.jacobian(known, one, 1.0, True), e, J]
+                alone.append(native.jacobian(known, one, 1.0, False))
+                assert all(a[k].tobytes() == b.tobytes() for a, b in zip(answers[0], alone, strict=True))
+
+
+@needs_kernel
+def test_one_configuration_and_many_have_the_same_signs_of_zeros_and_no_numbers_in_the_same_places(instructions, rng):
+    odd = [0.0, -0.0, np.nan, np.inf, -np.inf, 1e5, 1.0000001e5, -1e300, 5e-324, np.pi]
+    for robot in random_robots(rng, 60):
+        known = handle(chain_of(robot))
+        q = np.where(rng.random((40, robot.n)) < 0.4, rng.choice(odd, (40, robot.n)), rng.uniform(-3, 3, (40, robot.n)))
+        T, J = native.pose(known, q), native.jacobian(known, q, 1.0, False)
+        for k, one in enumerate(q):
+            for many, alone in ((T, native.pose(known, one)), (J, native.jacobian(known, one, 1.0, False))):
+                none = np.isnan(alone)
+                assert np.array_equal(none, np.isnan(many[k]))
+                assert many[k][~none].tobytes() == alone[~none].tobytes()
 
 
 @needs_kernel

@@ -1,77 +1,95 @@
 /* One configuration followed by itself: each product and sum of lanes.h, so the same digits, without seven idle lanes.
 
-   Sines and cosines of four joints are worked out at a time. Included by lanes.h.
+   The lanes are here the three entries of a column of the frame (and one that is idle), four joints whose sines and
+   cosines are worked out at a time, and the joints of a row of the Jacobian. Included by lanes.h.
 */
 
+/* Joints by fours. */
+#define ROW_JOINTS ((MOST_JOINTS + 3) / 4 * 4)
+
 typedef struct {
-    double s[MOST_JOINTS], c[MOST_JOINTS], v[12];
+    double s[ROW_JOINTS], c[ROW_JOINTS];
+    Part v[4]; /* x, y, z, p */
 } Row;
 
-static void row_prepared(const Chain *chain, const double *q, Row *row) {
+static inline void row_prepared(const Chain *chain, const double *q, Row *row) {
     int n = chain->n;
     for (int i = 0; i < n; i++)
         row->s[i] = q[i] + chain->offsets[i];
+    for (int i = n; i % 4; i++)
+        row->s[i] = 0.0;
     for (int first = 0; first < n; first += 4) {
-        double x[4] = {0.0, 0.0, 0.0, 0.0};
-        int count = n - first < 4 ? n - first : 4;
-        Part sine, cosine;
-        for (int l = 0; l < count; l++)
-            x[l] = row->s[first + l];
-        sine_cosine(*(Part *)x, &sine, &cosine);
-        for (int l = 0; l < count; l++) {
-            if (!chain->revolute[first + l])
+        Part x = *(const Part *)(row->s + first), sine, cosine;
+        sine_cosine(x, &sine, &cosine);
+        /* What is left of joints that slide, and of angles that are far or no numbers. */
+        int kept = 0;
+        for (int i = first; i < first + 4 && i < n; i++)
+            kept |= !chain->revolute[i] | !(fabs(row->s[i]) <= FARTHEST);
+        *(Part *)(row->c + first) = cosine;
+        if (!kept) {
+            *(Part *)(row->s + first) = sine;
+            continue;
+        }
+        for (int i = first; i < first + 4 && i < n; i++) {
+            int far = !(fabs(x[i - first]) <= FARTHEST);
+            if (!chain->revolute[i])
                 continue;
-            int far = !(fabs(x[l]) <= FARTHEST);
-            row->s[first + l] = far ? sin(x[l]) : sine[l];
-            row->c[first + l] = far ? cos(x[l]) : cosine[l];
+            row->s[i] = far ? sin(x[i - first]) : sine[i - first];
+            row->c[i] = far ? cos(x[i - first]) : cosine[i - first];
         }
     }
-    for (int j = 0; j < 12; j++)
-        row->v[j] = chain->first[j];
+    for (int k = 0; k < 4; k++) {
+        const double *from = chain->first + 3 * k;
+        row->v[k] = (Part){from[0], from[1], from[2], 0.0};
+    }
+}
+
+/* A column of F C: what zeros of C spare is left out. */
+static inline Part row_column(const double *m, Part x, Part y, Part z) {
+    Part out = {0.0, 0.0, 0.0, 0.0};
+    int begun = 0;
+    if (m[0] != 0.0) {
+        out = m[0] * x;
+        begun = 1;
+    }
+    if (m[1] != 0.0) {
+        out = begun ? out + m[1] * y : m[1] * y;
+        begun = 1;
+    }
+    if (m[2] != 0.0)
+        out = begun ? out + m[2] * z : m[2] * z;
+    return out;
 }
 
 /* Along joint i and the constant after it: `turn` or `slide`, and `go_on`. */
-static void row_moved(const Chain *chain, int i, Row *row) {
+static inline void row_moved(const Chain *chain, int i, Row *row) {
     const Constant *C = &chain->links[i];
-    double *v = row->v, s = row->s[i], c = row->c[i], out[9];
-    if (chain->revolute[i])
-        for (int r = 0; r < 3; r++) {
-            double x = v[r], y = v[3 + r];
-            v[r] = c * x + s * y;
-            v[3 + r] = c * y - s * x;
-        }
-    else
-        for (int r = 0; r < 3; r++)
-            v[9 + r] += s * v[6 + r];
-    if (C->shifts)
-        for (int j = 0; j < 3; j++)
-            if (C->m[9 + j] != 0.0)
-                for (int r = 0; r < 3; r++)
-                    v[9 + r] += C->m[9 + j] * v[3 * j + r];
-    if (!C->turns)
-        return;
-    for (int k = 0; k < 3; k++)
-        for (int r = 0; r < 3; r++) {
-            int begun = 0;
-            out[3 * k + r] = 0.0;
-            for (int j = 0; j < 3; j++) {
-                double m = C->m[3 * k + j];
-                if (m == 0.0)
-                    continue;
-                out[3 * k + r] = begun ? out[3 * k + r] + m * v[3 * j + r] : m * v[3 * j + r];
-                begun = 1;
-            }
-        }
-    for (int j = 0; j < 9; j++)
-        v[j] = out[j];
-}
-
-static void row_put(const Row *row, double *out) {
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 4; c++)
-            out[4 * r + c] = row->v[3 * c + r];
-    out[12] = out[13] = out[14] = 0.0;
-    out[15] = 1.0;
+    double s = row->s[i], c = row->c[i];
+    Part x = row->v[0], y = row->v[1], z = row->v[2], p = row->v[3];
+    if (chain->revolute[i]) {
+        Part before = x;
+        x = c * before + s * y;
+        y = c * y - s * before;
+    } else {
+        p += s * z;
+    }
+    if (C->shifts) {
+        if (C->m[9] != 0.0)
+            p += C->m[9] * x;
+        if (C->m[10] != 0.0)
+            p += C->m[10] * y;
+        if (C->m[11] != 0.0)
+            p += C->m[11] * z;
+    }
+    row->v[3] = p;
+    if (C->turns) {
+        row->v[0] = row_column(C->m, x, y, z);
+        row->v[1] = row_column(C->m + 3, x, y, z);
+        row->v[2] = row_column(C->m + 6, x, y, z);
+    } else {
+        row->v[0] = x;
+        row->v[1] = y;
+    }
 }
 
 static void row_pose(const Chain *chain, const double *q, double *out) {
@@ -79,25 +97,49 @@ static void row_pose(const Chain *chain, const double *q, double *out) {
     row_prepared(chain, q, &row);
     for (int i = 0; i < chain->n; i++)
         row_moved(chain, i, &row);
-    row_put(&row, out);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++)
+            out[4 * r + c] = row.v[c][r];
+    out[12] = out[13] = out[14] = 0.0;
+    out[15] = 1.0;
 }
 
 /* The Jacobian (6, n) in the base's axes, lengths as they are: `column` for size 1. */
 static void row_jacobian(const Chain *chain, const double *q, double *out) {
     Row row;
-    double axes[MOST_JOINTS][6];
+    double z[3][ROW_JOINTS], o[3][ROW_JOINTS], J[3][ROW_JOINTS];
     int n = chain->n;
     row_prepared(chain, q, &row);
     for (int i = 0; i < n; i++) {
-        for (int j = 0; j < 6; j++)
-            axes[i][j] = row.v[6 + j];
+        for (int r = 0; r < 3; r++) {
+            z[r][i] = row.v[2][r];
+            o[r][i] = row.v[3][r];
+        }
         row_moved(chain, i, &row);
     }
-    for (int i = 0; i < n; i++)
+    for (int i = n; i % 4; i++)
+        for (int r = 0; r < 3; r++)
+            z[r][i] = o[r][i] = 0.0;
+    for (int i = 0; i < n; i += 4) {
+        Part axis[3], lever[3];
+        for (int r = 0; r < 3; r++) {
+            axis[r] = *(const Part *)(z[r] + i);
+            lever[r] = row.v[3][r] - *(const Part *)(o[r] + i);
+        }
         for (int r = 0; r < 3; r++) {
             int a = (r + 1) % 3, b = (r + 2) % 3;
-            double *z = axes[i], one = row.v[9 + a] - z[3 + a], other = row.v[9 + b] - z[3 + b];
-            out[r * n + i] = chain->revolute[i] ? z[a] * other - z[b] * one : z[r];
-            out[(3 + r) * n + i] = chain->revolute[i] ? z[r] : 0.0;
+            *(Part *)(J[r] + i) = axis[a] * lever[b] - axis[b] * lever[a];
         }
+    }
+    for (int r = 0; r < 3; r++)
+        for (int i = 0; i < n; i++) {
+            out[r * n + i] = J[r][i];
+            out[(3 + r) * n + i] = z[r][i];
+        }
+    for (int i = 0; i < n; i++)
+        if (!chain->revolute[i])
+            for (int r = 0; r < 3; r++) {
+                out[r * n + i] = z[r][i];
+                out[(3 + r) * n + i] = 0.0;
+            }
 }
