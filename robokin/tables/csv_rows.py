@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from itertools import chain
+from struct import pack_into
 from typing import IO
 
 import numpy as np
@@ -35,7 +35,11 @@ IGNORED, NUMBER, TEXT, SOLUTION = range(4)
 UNPLAIN = (b'"', b"#", b"\r", b"\0")
 """What a block may not hold that is split at its separators: quotes, comments, other ends of lines."""
 
-WHOLE_MINUS_ZERO = re.compile(rb"(?<![eE])-0(?![.eE])")
+IN_NUMBERS = NUMERALS.translate(None, b",\n")
+"""What of it stands in a number or beside it."""
+
+WHOLE_MINUS_ZERO = re.compile(rb"-0(?<![eE]-0)(?![.eE])")
+"""It begins with what is looked for, which is found ten times as fast as behind a condition."""
 
 HEADER_CELL = re.compile(r"\s*[A-Za-z_][\w .()\[\]/°-]*\s*")
 
@@ -180,7 +184,7 @@ class CsvReader(RecordReader):
         block = (block.replace(b"\r\n", b"\n") if b"\r" in block else block).removesuffix(b"\n")
         places = list(self.found.places)
         passed: list[list[str]] = []
-        if self.passed or self.separator not in ", " or block.translate(None, NUMERALS):
+        if self.passed or self.separator not in ", " or not plain_lines(block, self.width):
             parts = self.split(block)
             if parts is None:
                 return None
@@ -251,18 +255,25 @@ class CsvReader(RecordReader):
         return numbers.replace(b",", b".").replace(b";", b","), passed
 
 
+def plain_lines(block: bytes, width: int) -> bool:
+    """Whether a block is plain numbers, so many a line with commas, as far as its signs and commas tell."""
+    line = b"," * (width - 1) + b"\n"
+    return block.translate(None, IN_NUMBERS) == (line * (block.count(b"\n") + 1))[:-1]
+
+
 def numbers_of(block: bytes, width: int) -> Array:
     """Lines of so many numbers each, with commas, as an array (m, width). Raises ValueError.
 
-    pydantic's core, which Typer brings, reads JSON ten times faster than float() reads numbers.
+    pydantic's core, which Typer brings, reads JSON ten times faster than float() reads numbers, and one list in two
+    thirds of the time of a list for each line.
     """
+    block = block.replace(b"\n", b",")
     from_json = pydantic_function("from_json")
-    if from_json is not None:
-        if b"-0" in block and WHOLE_MINUS_ZERO.search(block):
-            raise ValueError("JSON has no sign for a whole number that is 0")
-        rows = from_json(b"[[" + block.replace(b"\n", b"],[") + b"]]", allow_inf_nan=False)
-    else:
-        rows = [[float(cell) for cell in line.split(b",")] for line in block.split(b"\n")]
-    if {*map(len, rows)} != {width}:
-        raise ValueError("lines of another length")
-    return np.fromiter(chain.from_iterable(rows), dtype=float, count=width * len(rows)).reshape(-1, width)
+    numbers = from_json(b"[" + block + b"]", allow_inf_nan=False) if from_json else [*map(float, block.split(b","))]
+    if not numbers:
+        raise ValueError("nothing but white space")
+    rows = np.empty((len(numbers) // width, width))
+    pack_into(f"{rows.size}d", rows.data, 0, *numbers)
+    if from_json and not rows.all() and WHOLE_MINUS_ZERO.search(block):
+        raise ValueError("JSON has no sign for a whole number that is 0")
+    return rows

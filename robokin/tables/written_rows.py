@@ -122,11 +122,11 @@ def csv_rows(table: Array) -> bytes:
         return "".join(",".join(map(_number, row)) + "\n" for row in table.tolist()).encode()
     import numpy as np
 
-    signs = bytearray(to_json(table.ravel().tolist())[1:])
+    signs = bytearray(to_json(table.ravel().tolist()))
     signs[-1:] = b","
     places = np.frombuffer(signs, dtype=np.uint8)
     places[np.flatnonzero(places == COMMA)[table.shape[1] - 1 :: table.shape[1]]] = END_OF_LINE
-    text = bytes(signs)
+    text = bytes(memoryview(signs)[1:])
     # Older cores write 1e16 for 1e+16.
     return UNSIGNED.sub(rb"e+\1", text) if b"e" in text else text
 
