@@ -24,7 +24,8 @@ LONGEST = 64
 NAME = re.compile(r"\bv\d+")
 """What a line assigns to."""
 
-PRODUCT = re.compile(r"v\d+ \* v\d+")
+SHORT = 40
+"""Characters of a line that may stand inside of another one."""
 
 Lines = list[tuple[str, str]]
 """Lines of code: what each assigns to, and what."""
@@ -137,7 +138,8 @@ def plain_frame(program: ChainWalk) -> PlainFrame:
 
 def needed(lines: Lines, entries: list[str], deep: str = "        ") -> list[str]:
     """The lines of code that the entries ask for."""
-    asked = Counter(entries)
+    asked = Counter(name for entry in entries for name in NAME.findall(entry))
+    last = {*asked}
     kept: Lines = []
     for name, source in reversed(lines):
         if asked[name]:
@@ -147,11 +149,49 @@ def needed(lines: Lines, entries: list[str], deep: str = "        ") -> list[str
     found = []
     for name, source in reversed(kept):
         whole = NAME.sub(lambda found: inside.get(found[0], found[0]), source)
-        if asked[name] == 1 and name not in entries and PRODUCT.fullmatch(whole):
-            inside[name] = f"({whole})"  # a line less, for a product that is asked for once
+        if asked[name] == 1 and name not in last and len(whole) < SHORT:
+            inside[name] = f"({whole})"  # a line less, for what is asked for once
         else:
             found.append(f"{deep}{name} = {whole}")
     return found
+
+
+def folded(lines: Lines, entries: list[str]) -> tuple[Lines, list[str]]:
+    """Lines and entries that come to the same, bit by bit, without changes of sign, - 0.0 and 1.0 *.
+
+    a + (-b) is a - b and (-a) b is -(a b) to the last bit, also where one of them is 0.
+    """
+    known: dict[str, tuple[bool, str]] = {}
+    """What stands for a name: whether with the other sign, and a name, which may be its own."""
+    found: Lines = []
+
+    def meant(name: str) -> tuple[bool, str]:
+        return known.get(name, (False, name))
+
+    def said(name: str) -> str:
+        minus, other = meant(name)
+        return f"(-{other})" if minus else other
+
+    for name, source in lines:
+        match source.split(" "):
+            case [one] if NAME.fullmatch(one[1:]) and one[0] == "-":
+                minus, other = meant(one[1:])
+                known[name] = (not minus, other)
+            case ["1.0", "*", one] | [one, "-", "0.0"]:
+                known[name] = meant(one)
+            case [left, "*", right]:
+                (minus, a), (less, b) = meant(left), meant(right)
+                known[name] = (minus != less, name)
+                found.append((name, f"{a} * {b}"))
+            case [left, "+" | "-" as sign, right]:
+                (minus, a), (less, b) = meant(left), meant(right)
+                less = less != (sign == "-")
+                if minus and not less:
+                    minus, a, less, b = less, b, minus, a
+                found.append((name, f"{'-' * minus}{a} {'-' if less else '+'} {b}"))
+            case _:
+                found.append((name, NAME.sub(lambda one: said(one[0]), source)))
+    return found, [said(entry) for entry in entries]
 
 
 def made(body: list[str], **names: Any) -> Any:

@@ -22,7 +22,18 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.kernel.code_lines import LONGEST, Lines, Term, halves_of, made, needed, tangents_of, walked, written
+from robokin.kernel.code_lines import (
+    LONGEST,
+    Lines,
+    Term,
+    folded,
+    halves_of,
+    made,
+    needed,
+    tangents_of,
+    walked,
+    written,
+)
 from robokin.kernel.columns import ChainProgram
 from robokin.kernel.entries import Entry
 from robokin.kernel.facts import fact
@@ -48,12 +59,11 @@ def straight_frame(program: ChainProgram) -> Straight | None:
     """The frame (4, 4) [m] that a program leads to, as a function of one configuration; None where there is no code."""
     if not _worth_while(program):
         return None
-    lines: Lines = []
-    (frame,) = _walked(program, lines)
+    code = _ChainCode(program)
+    (frame,) = code.frames()
     rows = [[column[k] for column in frame] for k in range(3)]
     entries = [written(entry) for row in rows for entry in row]
-    entries[3::4] = [written(entry) for entry in frame[3]]
-    return _compiled(program, lines, [*entries, "0.0", "0.0", "0.0", "1.0"], (4, 4))
+    return code.compiled([*entries, "0.0", "0.0", "0.0", "1.0"], (4, 4))
 
 
 @fact
@@ -65,8 +75,8 @@ def straight_jacobian(program: ChainProgram, tool: bool) -> Straight | None:
     """
     if not _worth_while(program):
         return None
-    lines: Lines = []
-    *starts, end = _walked(program, lines)
+    code = _ChainCode(program)
+    *starts, end = code.frames()
     entries: list[Entry] = []
     for turn, (_, _, z, o) in zip(program.turns, starts, strict=True):
         if turn is None:
@@ -77,7 +87,7 @@ def straight_jacobian(program: ChainProgram, tool: bool) -> Straight | None:
     if tool:
         entries += [column[k] for k in range(3) for column in end[:3]]
         entries += [0.0, 0.0, 0.0]
-    return _compiled(program, lines, [written(entry) for entry in entries], (program.n + 2 * tool, 6))
+    return code.compiled([written(entry) for entry in entries], (program.n + 2 * tool, 6))
 
 
 @fact
@@ -92,7 +102,7 @@ def straight_residuals(program: ChainProgram) -> StraightResiduals | None:
     halves = [half.name for half in halves_of(program, before)[1]]
     lines: Lines = []
     given = [Term.named(lines, f"h{k}") for k in range(len(halves))]
-    (frame,) = _walked(program, lines, given)
+    (frame,) = walked(program, lines, halves_of(program, lines)[0], given)
     targets: list[Any] = [Term.named(lines, f"t{k}") for k in range(12)]
     entries = [entry for column in frame for entry in column]
     off = [target - entry for target, entry in zip(targets, entries, strict=True)]
@@ -114,51 +124,58 @@ def straight_residuals(program: ChainProgram) -> StraightResiduals | None:
         body += [f"        {', '.join(half.name for half in given)}, = tangents[k : k + {len(given)}]"]
         body += [f"        k += {len(given)}"]
     body += [*needed(lines, sums), f"        off.append((sqrt({sums[0]}), sqrt({sums[1]} * 0.5)))", "    return off"]
-    return cast(StraightResiduals, _made(program, body, array=np.array, tan=np.tan))
+    return cast(StraightResiduals, made(body, array=np.array, tan=np.tan))
 
 
 def _worth_while(program: ChainProgram) -> bool:
     return 0 < program.n <= LONGEST
 
 
-def _walked(
-    program: ChainProgram, lines: Lines, given: list[Term] | None = None
-) -> list[tuple[Column, Column, Column, Column]]:
-    """The frames of a program in terms whose lines are noted, with the tangents of the halves where they are given."""
-    values, halves = halves_of(program, lines)
-    if given is not None:
-        tangents = given
-    elif same_tangents():
-        tangents = tangents_of(halves, lines)
-    else:
-        together = Term(lines, f"tangents({', '.join(half.name for half in halves)})")
-        tangents = [Term(lines, f"{together.name}[{k}]") for k in range(len(halves))]
-    return walked(program, lines, values, tangents)
+class _ChainCode:
+    """The lines of a function that takes one configuration of a program and returns an array."""
 
+    def __init__(self, program: ChainProgram) -> None:
+        self.program = program
+        self.lines: Lines = []
+        self.begin = [f"    {', '.join(f'q{i}' for i in range(program.n))}, = q"]
 
-def _compiled(program: ChainProgram, lines: Lines, entries: list[str], shape: tuple[int, int]) -> Straight:
-    """The function that returns the entries as an array of this shape."""
-    body = ["def straight(q):", f"    {', '.join(f'q{i}' for i in range(program.n))}, = q"]
-    body += needed(lines, entries, "    ")
-    body += [f"    found = empty({shape})", f"    fill(found, 0, {', '.join(entries)})", "    return found"]
-    return cast(Straight, _made(program, body, fill=Struct(f"{len(entries)}d").pack_into))
+    def frames(self) -> list[tuple[Column, Column, Column, Column]]:
+        """The frames of the program in terms whose lines are noted."""
+        values, halves = halves_of(self.program, self.lines)
+        if same_tangents() or not halves:
+            return walked(self.program, self.lines, values, tangents_of(halves, self.lines))
+        # An array of angles: if their sum is finite all of them are, and nothing can be said of them.
+        names = [half.name for half in halves]
+        self.begin += needed(self.lines, names, "    ")
+        given = [Term.named(self.lines, f"h{k}") for k in range(len(halves))]
+        ask = f"(tangents if ({' + '.join(names)}) * 0.0 == 0.0 else quiet_tangents)({', '.join(names)})"
+        self.begin += [f"    {', '.join(one.name for one in given)}, = {ask}"]
+        return walked(self.program, self.lines, values, given)
 
+    def compiled(self, entries: list[str], shape: tuple[int, int]) -> Straight:
+        """The function that returns the entries as an array of this shape."""
+        lines, entries = folded(self.lines, entries)
+        body = ["def straight(q):", *self.begin, *needed(lines, entries, "    ")]
+        body += [f"    found = empty({shape})", f"    fill(found, 0, {', '.join(entries)})", "    return found"]
+        tangents = _tangents_of(len(self.program.turning))
 
-def _made(program: ChainProgram, body: list[str], **names: Any) -> Any:
-    """The function of some lines, which may use these names besides its own."""
-    names = {"empty": np.empty, "tangents": _tangents_of(len(program.turning)), **names}
-    return made(body, **names)
+        def quiet_tangents(*halves: float) -> list[float]:
+            with np.errstate(invalid="ignore"):  # of an infinite angle, for which the batch says nothing either
+                return tangents(*halves)
+
+        names = {"empty": np.empty, "fill": Struct(f"{len(entries)}d").pack_into}
+        return cast(Straight, made(body, tangents=tangents, quiet_tangents=quiet_tangents, **names))
 
 
 def _tangents_of(count: int) -> Callable[..., list[float]]:
     """numpy's tangents of some angles, as floats."""
     fill: Callable[..., None] = Struct(f"{count}d").pack_into
+    empty, tan = np.empty, np.tan
 
     def tangents(*halves: float) -> list[float]:
-        angles = np.empty(count)
+        angles = empty(count)
         fill(angles, 0, *halves)
-        with np.errstate(invalid="ignore"):  # of an infinite angle, for which the batch says nothing either
-            found: list[float] = np.tan(angles, angles).tolist()
+        found: list[float] = tan(angles, angles).tolist()
         return found
 
     return tangents

@@ -14,6 +14,7 @@ from typing import Any
 from robokin.kernel.chain import chain_of
 from robokin.kernel.facts import facts_of
 from robokin.kernel.native_kernel import handle, native
+from robokin.kinematics.code_at_once import jacobian_by_code, pose_by_code
 from robokin.model import Robot
 
 NAME = "chain at once"
@@ -23,14 +24,10 @@ ALONE = 1
 """The number of cores of a plain call; who gives another object may mean the same, and is asked in Python."""
 
 
-def _none(*_: Any) -> None:
-    """The answer where there is no kernel."""
-
-
-pose_at_once: Callable[[Robot, Any], Any] = _none if native is None else native.pose_at_once
+pose_at_once: Callable[[Robot, Any], Any] = pose_by_code if native is None else native.pose_at_once
 """The poses of the tool (..., 4, 4) at q (..., n), or None."""
 
-jacobian_at_once: Callable[[Robot, Any], Any] = _none if native is None else native.jacobian_at_once
+jacobian_at_once: Callable[[Robot, Any], Any] = jacobian_by_code if native is None else native.jacobian_at_once
 """The Jacobians (..., 6, n) in the axes of the base, or None."""
 
 

@@ -17,6 +17,7 @@ from robokin.kernel.frames import fill_poses, frames, pose, program_to_tool, run
 from robokin.kernel.native_kernel import native
 from robokin.kernel.straight_line import Straight, straight_frame
 from robokin.kinematics.at_once import ALONE, keep_at_once, pose_at_once
+from robokin.kinematics.code_at_once import POSE, keep_code
 from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.model.named_values import plain_joint_values
 from robokin.spatial import exact
@@ -53,6 +54,7 @@ def forward_kinematics(robot: Robot, q: ArrayLike, cores: int | None = 1) -> Arr
     if cores == 1 and native is None and q.ndim == 1:
         one = _one_pose(moving)
         if one is not None:
+            keep_code(POSE, moving, one)
             try:
                 return one(q.tolist())
             except ValueError:  # of an infinite angle: the batch has NaN for it

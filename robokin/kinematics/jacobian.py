@@ -18,6 +18,7 @@ from robokin.kernel.geometric_jacobian import jacobian as chain_jacobian
 from robokin.kernel.native_kernel import native
 from robokin.kernel.straight_line import Straight, straight_jacobian
 from robokin.kinematics.at_once import ALONE, jacobian_at_once, keep_at_once
+from robokin.kinematics.code_at_once import JACOBIAN, keep_code
 from robokin.kinematics.forward import SHARE, joint_motions, threads_wanted
 from robokin.model import CoupledRobot, Robot
 
@@ -58,6 +59,8 @@ def _at_one(robot: Robot, q: Array, frame: str) -> Array | None:
     one = _straight(robot, frame)
     if one is None:
         return None
+    if frame == BASE:
+        keep_code(JACOBIAN, robot, one)
     try:
         columns = one(q.tolist())
     except ValueError:
