@@ -25,6 +25,8 @@ from robokin.kernel.chain_walk import ChainWalk, shift_of
 if TYPE_CHECKING:
     from robokin.kernel.chain_walk import Column
 
+PADDING = 8
+
 BLOCK = 4096
 """Frames in a block: its columns (32 kB each) stay in the second-level cache, and the interpreter's
 share of the work is spread thin."""
@@ -55,7 +57,8 @@ class ChainProgram(ChainWalk):
     def frames(self, q: Array, out: Array) -> None:
         """Fill out: (m, marks, 4, 4) with the marked frames at q: (m, n) [rad | m]; m at most a block."""
         m = len(q)
-        assembled = np.empty((16, m))
+        # A few columns more: rows a power of two apart would share their places in the cache.
+        assembled = np.empty((16, m + PADDING))[:, :m]
         assembled[12:15] = 0.0
         assembled[15] = 1.0
         flat = out.reshape(m, self.marks, 16)

@@ -7,17 +7,21 @@ Source: B. Siciliano et al., Robotics: Modelling, Planning and Control, 2009, eq
 
 from __future__ import annotations
 
+import math
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 from robokin.arrays import Array, Flags
 from robokin.kernel.chain import Chain
-from robokin.kernel.frames import frames, program_to_joints
+from robokin.kernel.frames import program_to_joints
 from robokin.kernel.native_kernel import handle, native
 
 BLOCK = 2048
 """Configurations at a time: their columns stay in the second-level cache."""
+
+COLUMNS, PADDING = 1024, 8
+"""The same where all entries of the Jacobians are kept until they are put in their order."""
 
 CROSS = ((1, 2), (2, 0), (0, 1))
 """Entry k of a × b is a[i] b[j] - a[j] b[i]."""
@@ -30,7 +34,9 @@ def jacobian(chain: Chain, q: Array, frame: Literal["base", "tool"] = "base", si
     """
     known = handle(chain)
     if native is None or known is None:
-        return jacobian_of(frames(chain, q), chain.revolute, frame, size)
+        out = np.empty((math.prod(q.shape[:-1]), 6, chain.n))
+        _fill_blocks(chain, q.reshape(len(out), chain.n), frame, size, out)
+        return out.reshape(*q.shape[:-1], 6, chain.n)
     J: Array = native.jacobian(known, q, size, frame == "tool")
     return J
 
@@ -39,9 +45,38 @@ def fill_jacobians(chain: Chain, q: Array, frame: Literal["base", "tool"], out: 
     """The same for q: (m, n), into `out` (m, 6, n), an array in C's order."""
     known = handle(chain)
     if native is None or known is None:
-        out[:] = jacobian(chain, q, frame)
+        _fill_blocks(chain, q, frame, 1.0, out)
     else:
         native.jacobian(known, q, 1.0, frame == "tool", out)
+
+
+def _fill_blocks(chain: Chain, q: Array, frame: Literal["base", "tool"], size: float, out: Array) -> None:
+    """Python's way: out (m, 6, n) at q: (m, n), a block at a time."""
+    program, sliding = program_to_joints(chain), np.flatnonzero(~chain.revolute)
+    width = min(len(q), COLUMNS)
+    # A few columns more: rows a power of two apart would share their places in the cache.
+    whole = np.empty((2, 3, chain.n, width + PADDING))
+    lever = np.empty((3, chain.n, width))
+    for start in range(0, len(q), COLUMNS):
+        part = q[start : start + COLUMNS]
+        m = len(part)
+        J, r = whole[..., :m], lever[..., :m]
+        linear, axes = J
+        *starts, tool = program.columns(part.T)
+        for i, (_, _, z, o) in enumerate(starts):
+            for k in range(3):
+                axes[k, i] = z[k]
+                np.subtract(tool[3][k], o[k], out=r[k, i])
+        for k, (i, j) in enumerate(CROSS):
+            np.multiply(axes[i], r[j], out=linear[k])
+            linear[k] -= axes[j] * r[i]
+        if size != 1.0:
+            linear /= size
+        if len(sliding):
+            linear[:, sliding], axes[:, sliding] = axes[:, sliding], 0.0
+        if frame == "tool":
+            J = np.stack([v[0] * x[0] + v[1] * x[1] + v[2] * x[2] for v in J for x in tool[:3]])
+        out[start : start + m].reshape(m, -1)[:] = J.reshape(-1, m).T
 
 
 def jacobian_of(F: Array, revolute: Flags, frame: Literal["base", "tool"] = "base", size: float = 1.0) -> Array:
