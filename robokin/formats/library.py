@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robokin.errors import MAX_SHOWN, InputError, nearest, or_list, shown
+from robokin.formats.kept_descriptions import keeps
 from robokin.formats.part import Part
 
 if TYPE_CHECKING:
@@ -100,7 +101,7 @@ def described_whole(
     path = library_file(name.lower())
     if path is None:
         raise unknown_name(name)
-    if not overrides and mode is None:
+    if not overrides and mode is None and not keeps():
         from robokin.formats.kept_robots import kept_robot
 
         if (kept := kept_robot(library_folder(), path)) is not None:

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator
 from collections.abc import Mapping as MappingType
 from pathlib import Path
-from typing import Any
 
 from robokin.errors import DescriptionError, ExpressionError, InputError, did_you_mean, nearest, shown
 from robokin.files import open_path, read_up_to
@@ -15,6 +12,7 @@ from robokin.formats.excerpts import LINE_BREAK
 from robokin.formats.expression_tokens import NAME
 from robokin.formats.faults import Faults
 from robokin.formats.foreign_texts import other_format
+from robokin.formats.kept_descriptions import read_once
 from robokin.formats.node_values import Context, choice_of, expression_text, fields_of, text_of
 from robokin.formats.number_expressions import RESERVED, Scope, Value
 from robokin.formats.parameters import Parameters
@@ -41,35 +39,8 @@ def read_file(
     expected = "a description (.yaml)"
     with open_path(place, expected) as stream:
         data = read_up_to(stream, place, MAX_BYTES, expected)
-    if Kept.descriptions is None:
-        return read_bytes(data, place, overrides, id or path.stem, mode)
     key = data, place, tuple((overrides or {}).items()), id or path.stem, mode
-    found = Kept.descriptions.pop(key, None)
-    found = read_bytes(data, place, overrides, id or path.stem, mode) if found is None else found
-    Kept.descriptions[key] = found  # the last that was asked for
-    if len(Kept.descriptions) > MOST_KEPT:
-        del Kept.descriptions[next(iter(Kept.descriptions))]
-    return found
-
-
-class Kept:
-    """What was read, by the bytes that it was read from; None where nothing is kept."""
-
-    descriptions: dict[Any, Robot | Mechanism | WheeledBase | Tree] | None = None
-
-
-MOST_KEPT = 32
-"""Descriptions that are kept."""
-
-
-@contextlib.contextmanager
-def kept_descriptions() -> Iterator[None]:
-    """Here what has been read once is not made again, unless its bytes have changed."""
-    Kept.descriptions = {}
-    try:
-        yield
-    finally:
-        Kept.descriptions = None
+    return read_once(key, lambda: read_bytes(data, place, overrides, id or path.stem, mode))
 
 
 def read_bytes(

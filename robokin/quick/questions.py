@@ -137,6 +137,8 @@ def _vector(key: str, value: Any) -> str:
 def _text(key: str, value: Any) -> str:
     if isinstance(value, str):
         return value
-    if isinstance(value, float | int) and not isinstance(value, bool) and isfinite(value):
+    if isinstance(value, int) and not isinstance(value, bool):
+        return str(value)
+    if isinstance(value, float) and isfinite(value):
         return repr(value)
     raise InputError(f"{key}: found {shown(json.dumps(value))}, expected a text or a number")

@@ -243,6 +243,29 @@ def test_the_library_s_own_are_read_anew(ask, tmp_path, monkeypatch):
     assert not server.known
 
 
+@pytest.mark.parametrize("arm", ["puma560", "planar2r"])
+def test_what_is_found_out_of_an_arm_is_found_out_once(ask, monkeypatch, arm):
+    """The second question about an arm of the library knows how it is solved."""
+    from robokin.inverse import analysis
+
+    asked = []
+    analyse = analysis.analyse
+    monkeypatch.setattr(analysis, "analyse", lambda *told: asked.append(told) or analyse(*told))
+    question = f"ik {arm} --pose Trans(0.3,0.2,0)"
+    first, second = ask(question, question)
+    assert len(asked) == 1
+    assert first == second
+
+
+@pytest.mark.parametrize("number", [10**400, -(10**400), 10**3000])
+def test_whole_numbers_of_any_length_are_read(ask, number):
+    """JSON has no greatest number: what is too much for an option is a mistake of the question."""
+    for question in ({"command": "fk", "robot": "planar2r", "q": [number, 0]},
+                     {"command": "ik", "robot": "planar2r", "xy": "1,0.3", "max": number}):  # fmt: skip
+        (answer,) = ask(json.dumps(question))
+        assert answer["status"] == 2, answer
+
+
 class serving:  # noqa: N801 - read as `with serving()`
     """A server in a process of its own."""
 

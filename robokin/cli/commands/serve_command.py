@@ -23,7 +23,7 @@ def command() -> int:
     from robokin.cli.statuses import say
     from robokin.errors import InputError
     from robokin.files import CLOSED
-    from robokin.formats.read import kept_descriptions
+    from robokin.formats.kept_descriptions import kept_descriptions
     from robokin.tables.sink import Writing, sink
 
     if sys.stdin is None or 0 in CLOSED:

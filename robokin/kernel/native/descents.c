@@ -5,8 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Steps of a call at most: beyond them nothing is gained. */
-#define MOST_STEPS_ASKED 100000
+/* Steps of a call at most, and of a correction: callers want 500 and 40. Whatever the numbers are they soon end. */
+#define MOST_STEPS_ASKED 1000
+#define MOST_CORRECTION_STEPS 100
 
 /* A C-contiguous array of m rows of `width` numbers, or of any number of rows where m is negative. */
 static const double *table(PyObject *object, npy_intp width, npy_intp *m, PyObject **copy) {
@@ -42,6 +43,16 @@ static int steps_of(PyObject *object) {
         return -1;
     }
     return (int)steps;
+}
+
+/* Whether numbers are from 0 to `most`; an error where one is not. */
+static int are_within(const double *numbers, npy_intp m, double most) {
+    for (npy_intp k = 0; k < m; k++)
+        if (!(numbers[k] >= 0.0 && numbers[k] <= most)) {
+            PyErr_SetString(PyExc_ValueError, "expected a number of steps");
+            return 0;
+        }
+    return 1;
 }
 
 /* A new array (m, width), or (m,) where the width is 0. */
@@ -344,11 +355,8 @@ static PyObject *corrected(PyObject *self, PyObject *const *args, Py_ssize_t cou
     const double *T = table(args[1], 16, &m, &copies[0]), *normals = T ? table(args[2], extra * n, &m, &copies[1]) : NULL;
     const double *most = normals ? table(args[4], 1, &m, &copies[2]) : NULL;
     const double *from = most ? table(args[5], n, &m, &copies[3]) : NULL;
-    for (npy_intp k = 0; from && k < m; k++)
-        if (!(most[k] <= MOST_STEPS_ASKED)) {
-            PyErr_SetString(PyExc_ValueError, "expected a number of steps");
-            goto end;
-        }
+    if (from && !are_within(most, m, MOST_CORRECTION_STEPS))
+        goto end;
     x = from ? made(m, n) : NULL;
     off = x ? made(m, 0) : NULL;
     const npy_intp shape[] = {m, 6, n};
@@ -404,9 +412,9 @@ static PyObject *advanced(PyObject *self, PyObject *const *args, Py_ssize_t coun
     const double *left = closed ? table(args[7], 1, &half, &copies[6]) : NULL;
     if (!left)
         goto end;
-    for (npy_intp i = 0; i < half; i++)
-        whole |= !(left[i] >= 0.0 && left[i] <= MOST_STEPS_ASKED);
-    if (m % 2 || whole) {
+    if (!are_within(left, half, MOST_STEPS_ASKED) || !are_within(F.steps_of, m, MOST_CORRECTION_STEPS))
+        goto end;
+    if (m % 2) {
         PyErr_SetString(PyExc_ValueError, "arrays of a descent do not fit each other");
         goto end;
     }
