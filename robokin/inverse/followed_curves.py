@@ -21,7 +21,8 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.expected import expect_choice, expect_flag
-from robokin.inverse.follow import BEGUN, CONTINUES, HALVINGS, ITSELF, Follows, follower_of
+from robokin.inverse.follow import BEGUN, CONTINUES, HALVINGS, ITSELF
+from robokin.inverse.followers import Follows, follower_of
 from robokin.inverse.joint_paths import (
     NEARLY,
     Event,

@@ -249,7 +249,7 @@ def path_of_rows(
 ) -> Path:
     """A path of rows q (m, n) [rad | m] at times t (m,) and parts s (m,) of the way, with what happens on it."""
     T = forward_kinematics(robot, q)
-    least, manipulability = dexterity(robot, q, task)
+    least, manipulability = dexterity(robot, q, task, NEARLY)
     events = singularities(robot, s, q, least, task)
     if event is not None:
         events.append(event)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from robokin.arrays import Array
+from robokin.arrays import Array, Flags
 from robokin.inverse.joint_paths import Path, PathTask
 from robokin.inverse.tool_curves import ToolCurve
 from robokin.kinematics.jacobian import jacobian
@@ -23,6 +23,9 @@ CLOSES = 1e-4
 
 FLAT = 1e-9
 """A determinant below this part of the product of the rows' lengths is looked at for its rank."""
+
+SQUARE = 1e-6
+"""A determinant of J Jᵀ above this part of the product of its diagonal has an inverse with digits enough."""
 
 FLATTEST = 1e-7
 """Singular values below this part of the greatest are those of a singular configuration."""
@@ -73,8 +76,8 @@ def _by_rows(values: Array, s: Array, i: int) -> Array:
     return np.asarray((k * rates[0] + h * rates[1]) / (h + k))
 
 
-def spare_motions(path: Path, task: PathTask) -> Array | None:
-    """The projections (m, n, n) onto motions that leave the tool where it is; None where there are no joints to spare.
+def spare_part(path: Path, task: PathTask, rates: Array) -> Array | None:
+    """What of rates (m, n) leaves the tool where it is, at each row; None where there are no joints to spare.
 
     What joints trade at a singular configuration of an arm without is no part of it.
     """
@@ -85,7 +88,23 @@ def spare_motions(path: Path, task: PathTask) -> Array | None:
     )
     if rank >= path.robot.n:
         return None
-    return np.asarray(np.eye(path.robot.n) - np.linalg.pinv(J, rcond=1e-10) @ J)
+    return np.asarray(rates - _least_rates(J, np.einsum("mij,mj->mi", J, rates)))
+
+
+def _least_rates(J: Array, twist: Array) -> Array:
+    """The rates (m, n) of least motion whose J (m, k, n) rate comes nearest to twist (m, k)."""
+    rates = np.zeros((len(J), J.shape[2]))
+    plain: Flags = np.zeros(len(J), dtype=bool)
+    if J.shape[1] < J.shape[2]:
+        # Most are regular, and a tenth of the time is enough for these.
+        G = J @ np.swapaxes(J, 1, 2)
+        plain = np.linalg.det(G) > SQUARE * np.prod(np.einsum("mii->mi", G), axis=1)
+        inverse, across, part = np.linalg.inv(G[plain]), np.swapaxes(J[plain], 1, 2), twist[plain, :, None]
+        found = across @ (inverse @ part)
+        # What squares lost comes back by a second step.
+        rates[plain] = (found + across @ (inverse @ (part - J[plain] @ found)))[:, :, 0]
+    rates[~plain] = np.einsum("mij,mj->mi", np.linalg.pinv(J[~plain], rcond=1e-10), twist[~plain])
+    return rates
 
 
 def _joint_rates(robot: Robot, q: Array, twist: Array, task: PathTask) -> Array:
@@ -102,7 +121,7 @@ def _joint_rates(robot: Robot, q: Array, twist: Array, task: PathTask) -> Array:
             rates[~flat] = np.linalg.solve(J[~flat], twist[~flat, :, None])[:, :, 0]
         rates[flat] = np.einsum("mij,mj->mi", np.linalg.pinv(J[flat], rcond=FLATTEST), twist[flat])
     else:
-        rates = np.einsum("mij,mj->mi", np.linalg.pinv(J, rcond=1e-10), twist)
+        rates = _least_rates(J, twist)
     off = np.max(np.abs(np.einsum("mij,mj->mi", J, rates) - twist), axis=1)
     rates[off > CLOSES * np.maximum(1e-12, np.max(np.abs(twist), axis=1))] = np.inf
     return rates

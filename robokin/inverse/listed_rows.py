@@ -43,17 +43,21 @@ class ListedRows:
     """The solutions at poses (m, 4, 4), at the places s (m,) of a way; solved in blocks, when they are asked for.
 
     solve: gives all solutions q (b, k, n), padded with NaN, and their count (b,); scale: (n,) what joint moves are
-    compared in [rad | m]; revolute: (n,).
+    compared in [rad | m]; revolute: (n,); block: how many poses are solved together, and found in a run at most where
+    few: there the solutions take long, and something else goes on.
     """
 
-    def __init__(self, solve: Solve, poses: Array, s: Array, scale: Array, revolute: Flags) -> None:
+    def __init__(
+        self, solve: Solve, poses: Array, s: Array, scale: Array, revolute: Flags, block: int | None = None
+    ) -> None:
+        self.block, self.most = block or BLOCK, block or len(poses)
         self.solve, self.poses, self.s, self.scale, self.revolute = solve, poses, s, scale, revolute
         self.blocks: dict[int, tuple[Array, Index]] = {}
 
     def at(self, i: int) -> Array:
         """All configurations (k, n) at place i."""
-        rows, count = self._block(i // BLOCK)
-        return rows[i % BLOCK, : count[i % BLOCK]]
+        rows, count = self._block(i // self.block)
+        return rows[i % self.block, : count[i % self.block]]
 
     def run(self, q: Array, rate: Array, i: int, bound: float) -> tuple[Array, Array]:
         """The rows (r, n) from place i on that follow q (n,) at place i - 1, each at most `bound` [1] from the last.
@@ -61,10 +65,10 @@ class ListedRows:
         rate: (n,) how the branch came to q, by s; zeros where that is not known. Also the rate at the last row.
         """
         found = [np.empty((0, len(q)))]
-        window = WINDOW
-        while i < len(self.poses):
-            first = i // BLOCK
-            rows = self._block(first)[0][i % BLOCK : i % BLOCK + window]
+        window, end = WINDOW, min(i + self.most, len(self.poses))
+        while i < end:
+            first, place = divmod(i, self.block)
+            rows = self._block(first)[0][place : place + window]
             ahead, whole = self._kept(q, rate, rows, np.diff(self.s[i - 1 : i + len(rows)]), bound)
             if not len(ahead):
                 break
@@ -112,7 +116,7 @@ class ListedRows:
 
     def _block(self, number: int) -> tuple[Array, Index]:
         if number not in self.blocks:
-            q, count = self.solve(self.poses[number * BLOCK : (number + 1) * BLOCK])
+            q, count = self.solve(self.poses[number * self.block : (number + 1) * self.block])
             if q.shape[1] == 0:
                 q = np.full((len(q), 1, q.shape[2]), np.nan)
             self.blocks[number] = q, count

@@ -25,8 +25,17 @@ from robokin.expected import expect_choice, expect_finite, expect_flag, expect_n
 from robokin.inverse.closer_looks import UnitRates, demand, looked_at_closely
 from robokin.inverse.follow import MOST
 from robokin.inverse.followed_curves import follow_curve, rows_from
-from robokin.inverse.joint_paths import Event, Path, PathTask, PathTurn, interpolate_joints, line_task, singularities
-from robokin.inverse.joint_rates import BESIDE, curve_rates, spare_motions
+from robokin.inverse.joint_paths import (
+    NEARLY,
+    Event,
+    Path,
+    PathTask,
+    PathTurn,
+    interpolate_joints,
+    line_task,
+    singularities,
+)
+from robokin.inverse.joint_rates import BESIDE, curve_rates, spare_part
 from robokin.inverse.time_profiles import BLEND, MotionLimits, Passing, Profile, timed_move
 from robokin.inverse.timed_curves import TimedCurve
 from robokin.inverse.tool_curves import ToolCurve
@@ -228,11 +237,11 @@ def unit_rates(path: Path, curve: ToolCurve, profile: Profile, task: PathTask) -
     if unbounded.any():
         singular = f"where the path is singular, at {path.s[int(np.argmax(unbounded))]:.6g} of it"
         raise InputError(f"a joint's velocity has no bound {singular}, expected a path beside that")
-    spare = spare_motions(path, task) if len(tau) > 2 else None
+    # A joint is to spare: what it does from row to row the line does not say, and is read off the rows.
+    spare = spare_part(path, task, np.gradient(path.q, tau, axis=0, edge_order=2)) if len(tau) > 2 else None
     if spare is None:
         return UnitRates(tau, path.q, speed, push)
-    # A joint is to spare: what it does from row to row the line does not say, and is read off the rows.
-    speed = speed + np.einsum("mij,mj->mi", spare, np.gradient(path.q, tau, axis=0, edge_order=2))
+    speed = speed + spare
     return UnitRates(tau, path.q, speed, np.gradient(speed, tau, axis=0, edge_order=2), True)
 
 
@@ -332,7 +341,7 @@ def _with_rows(
 ) -> Path:  # fmt: skip
     """The path of rows q, velocities and accelerations (m, n) at times t (m,)."""
     q, velocity, acceleration = rows
-    least, manipulability = dexterity(robot, q)
+    least, manipulability = dexterity(robot, q, None, NEARLY)
     part = t / duration
     events = singularities(robot, part, q, least, None)
     events += [event] if event is not None else []

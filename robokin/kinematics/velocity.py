@@ -34,6 +34,9 @@ from robokin.model.named_values import plain_joint_values
 
 TaskName = Literal["pose", "position", "orientation"]
 
+SQUARED = 1e-10
+"""Squares of singular values below this part of the sum of all are told by the values themselves."""
+
 ROWS = {"pose": slice(0, 6), "position": slice(0, 3), "orientation": slice(3, 6)}
 
 
@@ -212,41 +215,60 @@ def differential_kinematics(
     return Differential(kind, J, rank, values, raw, manipulability, condition, null, robot, q, frame)
 
 
-def dexterity(robot: Robot, q: Array, task: TaskName | None = None) -> tuple[Array, Array]:
+def dexterity(robot: Robot, q: Array, task: TaskName | None = None, below: float = np.inf) -> tuple[Array, Array]:
     """The least singular value and the manipulability, (m,) each, at q (m, n): those of `differential_kinematics`.
 
-    The former is infinite of an arm that cannot move its tool. Of square Jacobians the latter is |det J|.
+    The former is infinite of an arm that cannot move its tool, and where it is not below a value: most configurations
+    are far from singular, which a determinant tells in a tenth of the time. Of square Jacobians the latter is |det J|.
     """
     kind = motion_task(robot, task)
     J = jacobian(robot, q)
     if not np.isfinite(J).all():
         raise InputError("q: the pose is too far away for a number, expected less")
     M, rows = kind.dimension, kind.rows
+    least, volume = np.full(len(q), np.inf), np.zeros(len(q))
     if not M:
-        return np.full(len(q), np.inf), np.zeros(len(q))
-    values = np.linalg.svd(scaled(robot, J, kind.size)[:, rows], compute_uv=False)[:, :M]
-    raw = J[:, rows]
+        return least, volume
+    S, raw = scaled(robot, J, kind.size)[:, rows], J[:, rows]
+    near = _may_be_near(S, M, below) if np.isfinite(below) else np.ones(len(q), dtype=bool)
+    values = np.linalg.svd(S[near], compute_uv=False)[:, :M]
+    least[near] = values[:, -1]
+    singular = np.flatnonzero(near)[values[:, -1] <= RANK * np.maximum(values[:, 0], RANK)]
+    by_values = near
     if raw.shape[1] == raw.shape[2] == M:
-        volume = np.abs(np.linalg.det(raw))
+        volume, by_values = np.abs(np.linalg.det(raw)), np.zeros(len(q), dtype=bool)
+    elif raw.shape[1] == M:
+        # Rows of lengths in sizes, so that squares lose no digits.
+        unit = np.where(np.arange(6)[rows] < 3, kind.size, 1.0)
+        even = raw[~near] / unit[:, None]
+        volume[~near] = np.prod(unit) * np.sqrt(np.linalg.det(even @ np.swapaxes(even, 1, 2)))
     else:
-        volume = np.prod(np.linalg.svd(raw, compute_uv=False)[:, :M], axis=1)
-    regular = values[:, -1] > RANK * np.maximum(values[:, 0], RANK)
-    return np.asarray(values[:, -1]), np.where(regular, volume, 0.0)
+        by_values = np.ones(len(q), dtype=bool)
+    volume[by_values] = np.prod(np.linalg.svd(raw[by_values], compute_uv=False)[:, :M], axis=1)
+    volume[singular] = 0.0
+    return least, volume
 
 
 def nearly_singular(robot: Robot, q: Array, below: float, task: TaskName | None = None) -> Flags:
     """Whether the least singular value at q (m, n) is below a value: (m,), as `dexterity` has it."""
-    kind = motion_task(robot, task)
-    J = scaled(robot, jacobian(robot, q), kind.size)[:, kind.rows]
-    n = kind.dimension
-    near: Flags = np.ones(len(q), dtype=bool)
-    if n > 1 and J.shape[1] == J.shape[2] == n and np.isfinite(J).all():
-        # Squares of the others add up to no more than that of all elements: so great is their product at most. A
-        # determinant tells so of nearly all, in a tenth of the time.
-        most = (np.sum(J * J, axis=(1, 2)) / (n - 1)) ** ((n - 1) / 2.0)
-        near = np.abs(np.linalg.det(J)) < 2.0 * below * most
-    near[near] = dexterity(robot, q[near], task)[0] < below
-    return near
+    return np.asarray(dexterity(robot, q, task, below)[0] < below)
+
+
+def _may_be_near(S: Array, M: int, below: float) -> Flags:
+    """Whether the least of M singular values of S (m, k, n) may be below a value: False where that is sure, (m,)."""
+    near: Flags = np.ones(len(S), dtype=bool)
+    if M < 2 or min(S.shape[1:]) != M:
+        return near
+    # Squares of the others add up to no more than that of all elements: so great is their product at most.
+    total = np.sum(S * S, axis=(1, 2))
+    most = (total / (M - 1)) ** (M - 1)
+    if S.shape[1] == S.shape[2]:
+        squared = np.linalg.det(S) ** 2
+    else:
+        across = np.swapaxes(S, 1, 2)
+        squared = np.linalg.det(S @ across if S.shape[1] == M else across @ S)
+    # Of what is squared rounding leaves a part of all elements.
+    return np.asarray(squared < most * np.maximum((2.0 * below) ** 2, SQUARED * total))
 
 
 def is_singular(robot: Robot, q: Array, task: TaskName | None = None) -> bool:

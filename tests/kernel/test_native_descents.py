@@ -350,13 +350,16 @@ def test_arrays_that_do_not_fit_are_refused(rng):
         lambda: native.corrected(arm, one((3, 4, 4)), one((3, 2, 7)), 1, one(3), one((3, 7)), 1.0, 0.0, 0.0),
         lambda: native.corrected(arm, one((3, 4, 4)), one((3, 1, 7)), 1, np.inf * one(3), one((3, 7)), 1.0, 0.0, 0.0),
         lambda: native.corrected(arm, one((3, 4, 4)), one((3, 1, 7)), 1, np.nan * one(3), one((3, 7)), 1.0, 0.0, 0.0),
+        lambda: native.followed_rows(arm, one((3, 4, 4)), one((1, 6)), one((1, 7)), one((4, 7)), 1.0, 0, True, False),
+        lambda: native.followed_rows(arm, one((3, 4, 4)), one((1, 7)), one((1, 7)), one((2, 7)), 1.0, 0, True, False),
+        lambda: native.followed_rows(arm, one((3, 4, 4)), one((1, 7)), one((1, 7)), one((4, 7)), 1.0, 8, True, False),
         lambda: native.candidates(arm, one((3, 4, 4))),
         lambda: advanced(arm, 3, 1),
         lambda: advanced(arm, 2, 2),
         lambda: advanced(arm, 4, 2, state=26),
         lambda: advanced(loop, 4, 2),
     ):
-        with pytest.raises(ValueError, match=r"fit|steps|turning|six|normals|PyCapsule"):
+        with pytest.raises(ValueError, match=r"fit|steps|turning|six|normals|open|PyCapsule"):
             wrong()
     for few in (
         native.refined,
@@ -364,6 +367,7 @@ def test_arrays_that_do_not_fit_are_refused(rng):
         native.tracked,
         native.descended,
         native.corrected,
+        native.followed_rows,
         native.advanced,
     ):
         with pytest.raises(TypeError):

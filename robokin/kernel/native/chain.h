@@ -65,7 +65,9 @@ typedef struct {
     void regulars##name(const Chain *, const double *, const double *, ptrdiff_t, double *);                           \
     void shortest_of##name(const double *, const double *, ptrdiff_t, int, int, double, double *);                     \
     void finely_closed##name(const Chain *, const double *, double *, ptrdiff_t, double, int, double, double, double,  \
-                             double *);
+                             double *);                                                                                \
+    ptrdiff_t followed_rows##name(const Chain *, const double *, ptrdiff_t, double, int, const double *,               \
+                                  const double *, double *, int, int, double *);
 
 DECLARED(_base)
 DECLARED(_avx2)

@@ -258,6 +258,46 @@ end:
     return both;
 }
 
+static PyObject *followed_rows(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copies[4] = {NULL, NULL, NULL, NULL}, *rows = NULL, *last = NULL, *all = NULL;
+    (void)self;
+    if (count != 9) {
+        PyErr_SetString(PyExc_TypeError, "followed_rows(chain, T, x, ahead, limits, size, opened, spare, listed)");
+        return NULL;
+    }
+    double size = PyFloat_AsDouble(args[5]);
+    int opened = PyErr_Occurred() ? -1 : steps_of(args[6]);
+    int spare = opened < 0 ? -1 : PyObject_IsTrue(args[7]), listed = spare < 0 ? -1 : PyObject_IsTrue(args[8]);
+    const Chain *known = listed < 0 ? NULL : moved_chain(args[0]);
+    npy_intp m = -1, n = known ? known->n : 0, one = 1, four = 4;
+    if (!known)
+        return NULL;
+    if (opened > n) {
+        PyErr_SetString(PyExc_ValueError, "expected fewer open joints");
+        return NULL;
+    }
+    const double *T = table(args[1], 16, &m, &copies[0]), *from = T ? table(args[2], n, &one, &copies[1]) : NULL;
+    const double *ahead = from ? table(args[3], n, &one, &copies[2]) : NULL;
+    const double *limits = ahead ? table(args[4], n, &four, &copies[3]) : NULL;
+    rows = limits ? made(m, n) : NULL;
+    last = rows ? made(1, n) : NULL;
+    if (!last)
+        goto end;
+    npy_intp followed = 0;
+    memcpy(numbers_of(last), ahead, (size_t)n * sizeof(double));
+    double *to = numbers_of(rows), *moved = numbers_of(last);
+    Py_BEGIN_ALLOW_THREADS
+    followed = lanes.followed_rows(known, T, m, size, opened, limits, from, moved, spare, listed, to);
+    Py_END_ALLOW_THREADS
+    all = Py_BuildValue("nOO", (Py_ssize_t)followed, rows, last);
+end:
+    for (int i = 0; i < 4; i++)
+        Py_XDECREF(copies[i]);
+    Py_XDECREF(rows);
+    Py_XDECREF(last);
+    return all;
+}
+
 static PyObject *gone_down(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     PyObject *copies[5] = {NULL, NULL, NULL, NULL, NULL}, *x = NULL, *parts = NULL, *both = NULL;
     (void)self;
@@ -470,6 +510,8 @@ PyMethodDef descent_methods[] = {
      "advanced(chain, T, most, low, high, state, closed, left, size, plain): state, closed, left, waits, points"},
     {"descended", (PyCFunction)(void (*)(void))descended, METH_FASTCALL,
      "descended(chain, T, far, x, size, low, high, steps): values (m, n) and errors (m, 6)"},
+    {"followed_rows", (PyCFunction)(void (*)(void))followed_rows, METH_FASTCALL,
+     "followed_rows(chain, T, x, ahead, limits, size, opened, spare, listed): count, rows (m, n), the last move (1, n)"},
     {"gone_down", (PyCFunction)(void (*)(void))gone_down, METH_FASTCALL,
      "gone_down(chain, T, x, size, low, high, weight, steps, still, least): values (m, n) and f's parts (m, 2)"},
     {"turned", (PyCFunction)(void (*)(void))turned, METH_FASTCALL,

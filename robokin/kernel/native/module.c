@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* As robokin.kernel.native_module expects it. */
-#define INTERFACE 8
+#define INTERFACE 9
 
 /* Under which name a robot's facts hold its chain. */
 #define KEPT_CHAIN "chain at once"
@@ -26,7 +26,7 @@
 #define LANES(name)                                                                                                    \
     {poses##name, frames##name, jacobians##name, errors##name, descended##name, corrected##name, gone_down##name,      \
      turned##name, advanced##name, refined##name, complex_refined##name, tracked##name, regulars##name,                \
-     shortest_of##name, finely_closed##name, solution##name, solutions##name, sides##name,                             \
+     shortest_of##name, finely_closed##name, followed_rows##name, solution##name, solutions##name, sides##name,        \
      prepared_elimination##name, eliminated##name, tried_candidates##name, listed_elimination##name}
 
 static const Lanes base = LANES(_base);

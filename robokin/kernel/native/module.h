@@ -45,6 +45,8 @@ typedef struct {
     void (*shortest_of)(const double *, const double *, ptrdiff_t, int, int, double, double *);
     void (*finely_closed)(const Chain *, const double *, double *, ptrdiff_t, double, int, double, double, double,
                           double *);
+    ptrdiff_t (*followed_rows)(const Chain *, const double *, ptrdiff_t, double, int, const double *, const double *,
+                               double *, int, int, double *);
     int (*solution)(const Form *, const double *, const Wanted *, Solutions *);
     void (*solutions)(const Form *, const double *, ptrdiff_t, const Wanted *, Solutions *, ptrdiff_t *, ptrdiff_t *,
                       unsigned char *);
