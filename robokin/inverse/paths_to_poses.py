@@ -40,6 +40,9 @@ TRIED = 100
 TRIED_HALVINGS = 14
 """How often a step of these is halved: where a branch that is not taken ends is known to a millionth of the way."""
 
+NOTHING_BETWEEN = "there is no point between the start and the end: a straight piece with a parabolic blend at both ends"
+"""What is said of blends of joints that go to one point."""
+
 
 def follow_line(
     robot: Robot,
@@ -250,6 +253,8 @@ def _by_joints(robot: Robot, start: Array | Goal, goals: Sequence[Goal], steps: 
         told = {name: getattr(timing, name) for name in ("duration", "profile", "passing", "blend", "rate")}
         told |= {"max_velocity": timing.limits.velocity, "max_acceleration": timing.limits.acceleration}
     path = trajectory(robot, np.array(points), steps=steps, limits=manner.limits, **told)
+    if timing is not None and timing.passing == "blend" and len(points) == 2:
+        path = replace(path, choices=(NOTHING_BETWEEN,))
     return path if timing is not None else replace(path, duration=None, velocity=None, acceleration=None)
 
 

@@ -41,6 +41,12 @@ SHAPES = {"cubic": (0.0, 0.0, 3.0, -2.0, 0.0, 0.0), "quintic": (0.0, 0.0, 0.0, 1
 BLEND = 0.2
 """A blend takes this part of the shorter of its two segments, where nothing says otherwise."""
 
+SLOWINGS, FASTER = 500, 2.0
+"""How often pieces between blends are slowed at most, and by how much at once."""
+
+BLENDED = 1e-6
+"""How much harder than the limits, relatively, blends are that are then slowed all alike."""
+
 HAIR = 1e-6
 """Points [rad | m] that are nearer together are passed by one blend: blends between them had no time."""
 
@@ -206,23 +212,61 @@ def _blends(points: Array, limits: MotionLimits, part: float) -> TimedCurve:
     """Straight pieces with parabolic blends about the points between, and at both ends; slowed to keep to the limits.
 
     A blend takes the same part of the time on both sides of its point, and passes by at an eighth of its duration times
-    the change of velocity.
+    the change of velocity. Beside a short piece it is short, and turns hard: pieces are slowed one by one until blends
+    keep to the limits, or all alike, whichever takes less time.
     """
     points, h = _chords(_apart(points), limits)
     if not len(h):
         return _curve([0.0], [], points)
+    moves = np.diff(points, axis=0)
+    ways = [_blended(points, h, part)]
+    if np.isfinite(limits.acceleration).any():
+        ways.append(_blended(points, _slowed_pieces(moves, h, limits, part), part))
+    return min((_within(way, limits) for way in ways), key=lambda curve: curve.duration)
+
+
+def _blend_times(h: Array, part: float) -> Array:
+    """The durations (k + 1,) of the blends about pieces that take h (k,)."""
     padded = np.concatenate([[np.inf], h, [np.inf]])
-    blend = part * np.minimum(padded[:-1], padded[1:])
+    return np.asarray(part * np.minimum(padded[:-1], padded[1:]))
+
+
+def _slowed_pieces(moves: Array, h: Array, limits: MotionLimits, part: float) -> Array:
+    """The times (k,) of pieces with moves (k, n), h (k,) or more, with which blends nearly keep to the limits."""
+    still = np.zeros((1, moves.shape[1]))
+
+    def harder(h: Array) -> Array:
+        """(k + 1,) by what blends are harder than the limits."""
+        velocity = np.concatenate([still, moves / h[:, None], still])
+        return np.asarray(
+            np.max(np.abs(np.diff(velocity, axis=0)) / limits.acceleration, axis=1) / _blend_times(h, part)
+        )
+
+    # What no velocity limits begins so fast that each blend is too hard.
+    bounded = np.max(np.abs(moves) / limits.velocity, axis=1) > 0.0
+    hard = harder(h)
+    h = np.where(bounded, h, h * math.sqrt(min(1.0, float(np.min(hard, where=hard > 0.0, initial=1.0)))))
+    for _ in range(SLOWINGS):
+        over = harder(h)
+        if np.max(over) <= 1.0 + BLENDED:
+            break
+        padded = np.concatenate([[np.inf], h, [np.inf]])
+        before, after = padded[:-1], padded[1:]
+        # A blend's shorter piece takes longer until it is as long as the other, both as soon as they are alike.
+        wanted = np.where(over > 1.0, np.minimum(before, after) * np.minimum(np.sqrt(over), FASTER), 0.0)
+        h = np.maximum(h, np.maximum(wanted[:-1], wanted[1:]))
+    return h
+
+
+def _blended(points: Array, h: Array, part: float) -> TimedCurve:
+    """The curve by points (k + 1, n) whose pieces take h (k,)."""
+    blend = _blend_times(h, part)
     # The ends' blends lie within their segments: the straight piece is steeper so that it is in time.
+    velocity = np.diff(points, axis=0) / h[:, None]
     h = h.copy()
     h[0] += 0.5 * blend[0]
     h[-1] += 0.5 * blend[-1]
     marks = np.concatenate([[0.0], np.cumsum(h)])
-    moves = np.diff(points, axis=0)
-    even = h.copy()
-    even[0] -= 0.5 * blend[0]
-    even[-1] -= 0.5 * blend[-1]
-    velocity = moves / even[:, None]
     times, pieces = [0.0], []
     q, v = points[0], np.zeros(points.shape[1])
     for k in range(len(marks)):
@@ -235,7 +279,7 @@ def _blends(points: Array, limits: MotionLimits, part: float) -> TimedCurve:
         pieces.append(_piece(q, v, (after - v) / blend[k]))
         q, v = q + 0.5 * (v + after) * blend[k], after
         times.append(start + blend[k])
-    return _within(_curve(times, pieces, points), limits)
+    return _curve(times, pieces, points)
 
 
 def _apart(points: Array) -> Array:

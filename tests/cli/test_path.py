@@ -182,6 +182,15 @@ def test_ways_through_points(call):
         assert answer.numbers[-1, 0] == 4.0 and answer.numbers[-1, 1:3] == pytest.approx([20, 80])
 
 
+def test_blends_of_a_path_without_points_between_are_told(call):
+    """Only its ends are blended, which a typed --blend may not have meant; the rows are those of parabolic ends."""
+    words = ["path", "planar2r", "--from", "0,10", "--to", "30,20", "--blend", "0.3", "--max-velocity", "90"]
+    said = call(*words, "-f", "csv")
+    assert said.status == 0 and "there is no point between the start and the end" in said.err
+    assert call(*words, "--json").json["choices"] == [said.err.removeprefix("robokin: ").strip()]
+    assert "no point between" not in call(*words, "--to", "60,50", "-f", "csv").err
+
+
 def test_a_point_may_be_a_pose(call):
     T = "Trans(-300, 700, 200) RPY(0, 70, 90)"
     document = call(*FROM, "--to", T, "--to", END, "--duration", "2", "--steps", "2", "--json").json

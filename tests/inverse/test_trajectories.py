@@ -424,6 +424,31 @@ def test_points_a_hair_apart_are_passed_by_one_blend():
     np.testing.assert_array_equal(twice.q[[0, -1]], way[[0, -1]])
 
 
+def test_pieces_between_points_that_are_close_are_slowed_alone():
+    """Two points 1e-4 rad apart need a slow piece, and no slow path: a stop at both would take 1.4 s."""
+    way = np.radians([[0.0, 10.0], [30.0, 20.0], [30.006, 20.0], [60.0, 50.0]])
+    bounds = {"max_velocity": np.radians(90.0), "max_acceleration": np.radians(300.0)}
+    path = trajectory(PLANAR, way, passing="blend", blend=0.3, steps=2000, **bounds)
+    assert path.duration < 2.0
+    assert np.min(np.max(np.abs(path.q - way[1]), axis=1)) < np.radians(0.01)
+
+
+@pytest.mark.parametrize("limited", ["both", "acceleration", "some"])
+def test_blends_keep_to_limits_however_far_points_are_apart(limited, rng):
+    for _ in range(10):
+        k, n = rng.integers(2, 9), rng.integers(1, 6)
+        way = np.cumsum(rng.normal(size=(k, n)) * 10.0 ** rng.uniform(-5, 0, (k, 1)), axis=0)
+        velocity, acceleration = rng.uniform(0.5, 3.0, n), rng.uniform(1.0, 10.0, n)
+        if limited != "both":
+            velocity[: n if limited == "acceleration" else n // 2] = np.inf
+        limits = MotionLimits(velocity, acceleration)
+        curve = timed_move(way, "trapezoidal", limits, None, "blend", rng.uniform(0.05, 1.0))
+        fast, hard = curve.greatest()
+        assert np.all(fast <= velocity * (1.0 + 1e-9)) and np.all(hard <= acceleration * (1.0 + 1e-9))
+        assert max(np.max(fast / velocity), np.max(hard / acceleration)) == pytest.approx(1.0)
+        np.testing.assert_allclose(curve.at(np.array([0.0, curve.duration]))[0], way[[0, -1]], atol=1e-12)
+
+
 @pytest.mark.parametrize("name", ["ur5e", "puma560", "scara", "planar2r", "planar3r", "panda"])
 @pytest.mark.parametrize("task", [None, "position"])
 def test_nearly_singular_is_what_dexterity_says(name, task):
