@@ -40,7 +40,9 @@ TRIED = 100
 TRIED_HALVINGS = 14
 """How often a step of these is halved: where a branch that is not taken ends is known to a millionth of the way."""
 
-NOTHING_BETWEEN = "there is no point between the start and the end: a straight piece with a parabolic blend at both ends"
+NOTHING_BETWEEN = (
+    "there is no point between the start and the end: a straight piece with a parabolic blend at both ends"
+)
 """What is said of blends of joints that go to one point."""
 
 
