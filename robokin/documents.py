@@ -20,8 +20,7 @@ from robokin.arrays import Array
 from robokin.brief import Answer
 from robokin.errors import InputError
 from robokin.expected import described, expect_choice, expect_finite, expect_flag, expect_kind
-from robokin.formats.part import tree_of
-from robokin.model import CoupledRobot, Mechanism, Robot, Tree, WheeledBase, expect_robot
+from robokin.model import Mechanism, Robot, Tree, WheeledBase, expect_robot
 from robokin.units import Units
 
 if TYPE_CHECKING:
@@ -200,16 +199,10 @@ def singular(robot: Robot, task: TaskName | None = None, units: Units | None = N
 
 def dof(entry: Robot | Mechanism | WheeledBase | Tree, units: Units | None = None) -> Document:
     """What `robokin dof` says of a robot, a mechanism, a wheeled base or a tree. Raises InputTypeError."""
-    if isinstance(entry, CoupledRobot):
-        entry = tree_of(entry)
-    if isinstance(entry, Tree):
-        from robokin.records.freedom_records import tree_record
+    if isinstance(entry, Robot | Tree):
+        from robokin.records.freedom_records import jointed_record
 
-        return tree_record(entry, entry.units if units is None else expect_units(units))
-    if isinstance(entry, Robot):
-        from robokin.records.freedom_records import robot_record
-
-        return robot_record(entry, entry.units if units is None else expect_units(units))
+        return jointed_record(entry, entry.units if units is None else expect_units(units))
     if isinstance(entry, WheeledBase):
         from robokin.mobility.manoeuvrability import manoeuvrability_of
 

@@ -19,7 +19,9 @@ from typing import Any
 
 from robokin.cli.app import COMMANDS
 from robokin.cli.program import run as run_program
+from robokin.errors import InputError
 from robokin.formats.library import library_file
+from robokin.model import Tree
 from robokin.records.description_records import file_record, verdict_of
 
 FILTERS = ("head", "tail", "sed", "grep", "cut", "jq")
@@ -151,6 +153,25 @@ def description(name: str) -> str:
 
 
 def written(name: str, text: str) -> dict[str, Any]:
-    """Write a description; what it describes, or what is wrong with it: the document of `robokin validate`."""
+    """Write a description; what it describes, or what is wrong with it: the document of `robokin validate`.
+
+    Beside that `tips` has, of a tree with several, a pair for each: its name, and the places of its chain's joint
+    values among those of the tree, of which there are `joints`.
+    """
     Path(name).write_text(text, encoding="utf-8")
-    return file_record(name, verdict_of(name))
+    verdict = verdict_of(name)
+    return file_record(name, verdict) | {"tips": tips_of(verdict), "joints": getattr(verdict, "n", 0)}
+
+
+def tips_of(verdict: object) -> list[list[Any]]:
+    """The tips of a tree that has several, each with the places of its chain's joint values; [] of anything else."""
+    if not isinstance(verdict, Tree) or len(verdict.tips) < 2:
+        return []
+    places = {joint.name: place for place, joint in enumerate(verdict.joints)}
+    found: list[list[Any]] = []
+    for tip in verdict.tips:
+        try:
+            found.append([tip, [places[joint.name] for joint in verdict.robot(tip).joints]])
+        except InputError:  # a joint that chains do not have: the question says which
+            found.append([tip, []])
+    return found

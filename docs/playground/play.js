@@ -38,11 +38,25 @@ function setText(value) { if (editor) { editor.setValue(value, -1); } else $("ya
 const robot = () => original.id && text() === original.text ? original.id : FILE;
 const quoted = (word) => /^[\w.,:=+@%/-]+$/.test(word) ? word : `"${word.replace(/["\\$`]/g, "\\$&")}"`;
 
-let later = 0, saved = "";  // saved: what robot.yaml holds
-function changed() { aged(); clearTimeout(later); later = setTimeout(read, 350); }
+// Of a robot with several tips: of each, which of the robot's joint values its chain has; which is asked about.
+let tips = new Map(), tip = "", count = 0;
+const ofTip = (list, name) => tips.has(name) ? tips.get(name).map((place) => list[place]) : list;
+
+let later = 0, saved = "", unread = false;  // saved: what robot.yaml holds; unread: the text is a newer one
+function changed() { unread = true; aged(); clearTimeout(later); later = setTimeout(read, 350); }
 async function read() {
-  const given = saved = text(), found = await ask("written", FILE, given);
-  if (given !== text()) return;
+  const given = saved = text();
+  unread = true;
+  aged();
+  try {
+    const found = await ask("written", FILE, given);
+    if (given === text()) await understood(found);
+  } finally {
+    if (given === text()) unread = false;
+    aged();
+  }
+}
+async function understood(found) {
   valid = found.valid;
   $("mistakes").replaceChildren(...found.errors.map((mistake) => {
     const item = document.createElement("li"), place = mistake.line ? `line ${mistake.line}: ` : "";
@@ -52,14 +66,20 @@ async function read() {
   marks(found.errors);
   aged();
   if (!valid) return;
-  if (kind !== found.kind) { kind = found.kind; tabs(); }
+  if (kind !== found.kind) pose = "";
+  const others = kind !== found.kind || String([...tips.keys()]) !== String(found.tips.map(([name]) => name));
+  [kind, tips, count] = [found.kind, new Map(found.tips), found.joints];
+  if (!tips.has(tip)) tip = "";
+  if (others) tabs();
   await picture();
   if (OWN_TIME.has(tab)) { await QUESTIONS[tab].before?.($("form")); shown(); } else await answer();
 }
 
 // The picture: the page that `robokin plot` writes, in a frame.
-let drawn = "", pose = "", fresh = true;  // fresh: another robot, whose sliders begin where its picture has them
-async function picture(more = "") {
+// pose: all joint values of the robot; fresh: another robot, whose sliders begin where its picture has them; alone: the
+// tip whose chain the picture has without the rest.
+let drawn = "", pose = "", fresh = true, alone = "";
+async function picture(more = "", of = "") {
   if (kind === "wheeled") {
     drawn = "";
     $("picture").srcdoc = "<p style='font:15px system-ui'>A wheeled base has no picture.</p>";
@@ -69,7 +89,8 @@ async function picture(more = "") {
   if (!page.files["picture.html"]) return;
   drawn = new TextDecoder().decode(page.files["picture.html"]);
   // Its sliders give the pose of what is answered next.
-  const before = fresh || more ? [] : pose.split(",").map(Number), there = new Promise((done) => $("picture").addEventListener("load", done, {once: true}));
+  const before = fresh || more ? [] : pose.split(",").map(Number);
+  const there = new Promise((done) => $("picture").addEventListener("load", () => { alone = of; done(); }, {once: true}));
   $("picture").srcdoc = drawn;
   await there;
   fresh = false;
@@ -78,20 +99,34 @@ async function picture(more = "") {
 }
 function moveTo(q) {
   const arm = $("picture").contentWindow?.robokin;
+  if (q.length === count) q = ofTip(q, alone);
   if (arm?.setQ && arm.n === q.length && q.every(Number.isFinite)) arm.setQ(q);
 }
-// The joint values that the sliders have, as a command line has them; "" without sliders.
+// The joint values that the sliders have, as a command line has them. Those of joints that have none in the picture stay
+// as they were.
 function sliders() {
   const arm = $("picture").contentWindow?.robokin;
-  return arm?.q && arm.n ? arm.q().map((v) => String(+v.toFixed(6))).join(",") : "";
+  if (!arm?.q || !arm.n) return pose;
+  const now = arm.q().map((v) => String(+v.toFixed(6)));
+  if (!tips.size) return now.join(",");
+  const all = pose.split(","), places = tips.get(alone) || now.map((_, place) => place);
+  if (now.length !== places.length || (tips.has(alone) ? all : now).length !== count) return pose;  // another picture comes
+  places.forEach((place, i) => { all[place] = now[i]; });
+  return all.slice(0, count).join(",");
 }
-// The pose of the sliders into the form; whether it is another one.
+// The pose of the sliders into the form; whether it is another one for the question.
 function taken() {
-  const now = sliders(), field = $("form").elements.q;
+  const now = sliders();
   if (now === pose) return false;
   pose = now;
-  if (field && !field.dataset.own && now) { field.value = now; shown(); }
-  return Boolean(field && !field.dataset.own && now);
+  return followed();
+}
+function followed() {
+  const {q: field, tip: of} = $("form").elements, now = pose && ofTip(pose.split(","), of?.value).join(",");
+  if (!field || field.dataset.own || !now || field.value === now) return false;
+  field.value = now;
+  shown();
+  return true;
 }
 setInterval(() => { if (taken() && tab === "pose") soon(); }, 150);
 
@@ -105,28 +140,32 @@ const aim = (v) => {
   return commas && !v.includes("[") && !/^\s*[A-Z]/.test(v) ? ` --xy${commas > 1 ? "z" : ""}=${quoted(v.replace(/\s/g, ""))}` : ` --pose ${quoted(v.trim())}`;
 };
 const values = (v) => v ? ` --q=${quoted(v.replace(/\s/g, ""))}` : "";
+// Of a robot with several tips the one that is asked about; a question of the whole has a name for that.
+const tipField = {id: "tip", label: "Tip", short: true};
+const about = (v) => `${robot()}${tips.has(v.tip) ? ` --tip=${quoted(v.tip)}` : ""}`;
 const QUESTIONS = {
-  pose: {title: "Pose", kinds: numbers, fields: [q], line: (v) => `fk ${robot()}${values(v.q)}`},
-  solutions: {title: "All solutions", kinds: numbers, fields: [target], before: fromSliders,
+  pose: {title: "Pose", kinds: numbers, fields: [{...tipField, whole: "all tips"}, q],
+    line: (v) => `fk ${about(v)}${values(v.q)}`},
+  solutions: {title: "All solutions", kinds: numbers, fields: [tipField, target], before: fromSliders,
     says: "The picture shows every solution after Ask.",
-    line: (v) => `ik ${robot()}${aim(v.target)}`, drawn: (v) => aim(v.target)},
-  jacobian: {title: "Jacobian", kinds: numbers, fields: [q, {id: "frame", label: "Frame", choices: ["base", "tool"], short: true}],
-    line: (v) => `jacobian ${robot()}${values(v.q)}${v.frame === "tool" ? " --frame tool" : ""}`},
-  singular: {title: "Singularities", kinds: numbers, fields: [], line: () => `singular ${robot()}`},
-  steps: {title: "Worked steps", kinds: numbers, fields: [
+    line: (v) => `ik ${about(v)}${aim(v.target)}`, drawn: (v) => aim(v.target)},
+  jacobian: {title: "Jacobian", kinds: numbers, fields: [tipField, q, {id: "frame", label: "Frame", choices: ["base", "tool"], short: true}],
+    line: (v) => `jacobian ${about(v)}${values(v.q)}${v.frame === "tool" ? " --frame tool" : ""}`},
+  singular: {title: "Singularities", kinds: numbers, fields: [tipField], line: (v) => `singular ${about(v)}`},
+  steps: {title: "Worked steps", kinds: numbers, fields: [tipField,
     {id: "what", label: "Of", choices: ["the pose, in symbols", "the pose, in symbols with these lengths", "the pose, frame after frame", "all solutions"]},
     {...q, of: ["the pose, frame after frame"]}, {...target, of: ["all solutions"]}],
     before: fromSliders,
-    line: (v) => v.what === "all solutions" ? `ik ${robot()}${aim(v.target)} --explain`
-      : v.what === "the pose, frame after frame" ? `fk ${robot()}${values(v.q)} --frames`
-      : `fk ${robot()} --symbolic${v.what === "the pose, in symbols" ? "" : " --numbers"}`},
-  workspace: {title: "Workspace", kinds: ["robot"], fields: [{id: "page", label: "As", choices: ["text", "a turning picture"], short: true}],
-    line: (v) => `workspace ${robot()}${v.page === "text" ? "" : " --plot workspace.html"}`},
-  freedoms: {title: "Freedoms", kinds: [...numbers, "mechanism", "wheeled"], fields: [], line: () => `dof ${robot()}`},
-  table: {title: "Table", kinds: [...numbers, "mechanism", "wheeled"], fields: [], line: () => `show ${robot()}`},
+    line: (v) => v.what === "all solutions" ? `ik ${about(v)}${aim(v.target)} --explain`
+      : v.what === "the pose, frame after frame" ? `fk ${about(v)}${values(v.q)} --frames`
+      : `fk ${about(v)} --symbolic${v.what === "the pose, in symbols" ? "" : " --numbers"}`},
+  workspace: {title: "Workspace", kinds: numbers, fields: [tipField, {id: "page", label: "As", choices: ["text", "a turning picture"], short: true}],
+    line: (v) => `workspace ${about(v)}${v.page === "text" ? "" : " --plot workspace.html"}`},
+  freedoms: {title: "Freedoms", kinds: [...numbers, "mechanism", "wheeled"], fields: [{...tipField, whole: "the whole"}], line: (v) => `dof ${about(v)}`},
+  table: {title: "Table", kinds: [...numbers, "mechanism", "wheeled"], fields: [{...tipField, whole: "the whole"}], line: (v) => `show ${about(v)}`},
   mark: {title: "Mark an answer", kinds: [...numbers, "mechanism"], fields: [
     {id: "what", label: "Question", choices: ["pose", "joint values", "Jacobian", "table", "freedoms"], short: true,
-      mechanism: ["freedoms"]},
+      mechanism: ["freedoms"]}, {...tipField, of: ["pose", "joint values", "Jacobian"]},
     {id: "tell", label: "Tell me", choices: ["what is right", "how far I am off", "what is wrong", "right or wrong"], short: true},
     {...q, of: ["pose", "Jacobian"]}, {...target, of: ["joint values"]},
     {id: "given", label: "Your answer: X,Y,Z, a matrix or an expression", of: ["pose"], wide: true},
@@ -142,11 +181,11 @@ const QUESTIONS = {
 const TOLD = {"how far I am off": " --feedback distance", "what is wrong": " --feedback part", "right or wrong": " --feedback verdict"};
 function mark(v) {
   const said = (words) => quoted((words || "").trim() || " "), told = TOLD[v.tell] || "";
-  if (v.what === "joint values") return `check ik ${robot()}${aim(v.target)} --q=${said(v.angles)}${told}`;
-  if (v.what === "Jacobian") return `check jacobian ${robot()}${values(v.q)} --expect=${said(v.rows)}${told}`;
+  if (v.what === "joint values") return `check ik ${about(v)}${aim(v.target)} --q=${said(v.angles)}${told}`;
+  if (v.what === "Jacobian") return `check jacobian ${about(v)}${values(v.q)} --expect=${said(v.rows)}${told}`;
   if (v.what === "table") return `check dh ${FILE} --against ${said(v.against)}${told}`;
   if (v.what === "freedoms") return `check dof ${robot()} --expect=${said(v.count)}${told}`;
-  return `check fk ${robot()}${values(v.q)} --expect=${said(v.given)}${told}`;
+  return `check fk ${about(v)}${values(v.q)} --expect=${said(v.given)}${told}`;
 }
 // Where a marked answer is worked out: another question, with what was typed.
 const WORKED = {pose: ["steps", "the pose, frame after frame"], "joint values": ["steps", "all solutions"], Jacobian: ["jacobian"], freedoms: ["freedoms"]};
@@ -167,10 +206,10 @@ const OWN_TIME = new Set(["solutions", "workspace", "singular", "mark", "lecture
 async function fromSliders(form) {
   const field = form.elements.target;
   if (!field || field.dataset.own || !valid) return;
-  const found = await ask("run", `fk ${robot()}${values(pose)} --json`, 80);
+  const asked = given(), found = await ask("run", `fk ${about(asked)}${values(ofTip(pose.split(","), asked.tip).join(","))} --json`, 80);
   if (found.status) return;
   const document = JSON.parse(found.text), at = document.pose;
-  if (!at || field.dataset.own) return;
+  if (!at || field.dataset.own || given().tip !== asked.tip) return;
   const list = (v) => v.map((x) => String(+x.toFixed(9))).join(",");
   field.value = `--xyz=${list(at.position)} --rpy=${list(at.rpy)}`;
   shown();
@@ -200,6 +239,9 @@ $("tabs").addEventListener("keydown", (event) => {
 });
 function choose(name, now = true) {
   tab = name;
+  asked += 1;  // what is still worked out answers another question
+  clearTimeout(waiting);
+  waiting = 0;
   for (const button of $("tabs").children) {
     const on = button.id === `tab-${name}`;
     button.setAttribute("aria-selected", on);
@@ -209,17 +251,24 @@ function choose(name, now = true) {
   const question = QUESTIONS[name], form = $("form");
   form.replaceChildren();
   for (const field of question.fields) {
+    if (field.id === "tip" && !tips.size) continue;
     const label = make("label", form, field.label, {className: field.short ? "short" : field.wide ? "wide" : ""});
-    if (field.choices) {
+    if (field.id === "tip") {
+      const select = make("select", label, "", {name: field.id});
+      if (field.whole) make("option", select, field.whole, {value: ""});
+      for (const name of tips.keys()) make("option", select, name, {value: name});
+      if (tip) select.value = tip;
+      select.addEventListener("change", () => toTip(select.value));
+    } else if (field.choices) {
       const select = make("select", label, "", {name: field.id});
       (field[kind] || field.choices).forEach((choice) => make("option", select, choice));
       select.addEventListener("change", () => { fitting(); shown(); if (!OWN_TIME.has(tab)) soon(); });
     } else {
       const input = make("input", label, "", {name: field.id, spellcheck: false, autocomplete: "off", autocapitalize: "off"});
       input.addEventListener("input", () => { input.dataset.own = input.value ? "1" : ""; shown(); });
-      if (field.id === "q") input.value = pose;
     }
   }
+  followed();
   fitting();
   const isLecture = name === "lectures";
   $("lecture").hidden = !isLecture;
@@ -234,11 +283,20 @@ function choose(name, now = true) {
   if (now && !OWN_TIME.has(name)) answer();
   return undefined;
 }
+// Another tip: what was typed for the one before goes with it.
+function toTip(name) {
+  tip = name;
+  for (const id of ["q", "target"]) if ($("form").elements[id]) $("form").elements[id].dataset.own = "";
+  followed();
+  QUESTIONS[tab].before?.($("form")).catch((error) => state(error.message, true));
+  shown();
+  if (!OWN_TIME.has(tab)) soon();
+}
 // Only the fields that belong to what is chosen are shown.
 function fitting() {
   const what = $("form").elements.what?.value;
   for (const field of QUESTIONS[tab].fields)
-    if (field.of) $("form").elements[field.id].parentElement.hidden = !field.of.includes(what);
+    if (field.of && $("form").elements[field.id]) $("form").elements[field.id].parentElement.hidden = !field.of.includes(what);
 }
 const given = () => Object.fromEntries(new FormData($("form")));
 const line = () => QUESTIONS[tab].line(given());
@@ -248,14 +306,18 @@ function shown() {
   aged();
 }
 // An answer to another question or description than those that stand there now says so; a pose is answered anew by itself.
+// What is about to be answered anew is dimmed.
 let answered = {line: "", text: ""};
 function aged() {
   if (tab === "lectures") return;
   const words = line(), other = answered.line !== words || (words.includes(FILE) && answered.text !== text());
+  const comes = unread || Boolean(waiting) || running === asked;
   $("answer").classList.toggle("old", other && $("answer").textContent !== "" && (tab !== "pose" || !valid));
+  $("answer").classList.toggle("busy", comes);
+  $("answer").setAttribute("aria-busy", comes);
 }
-let waiting = 0;
-function soon() { shown(); clearTimeout(waiting); waiting = setTimeout(answer, 120); }
+let waiting = 0, running = -1;  // an answer that comes soon; the one that is worked out
+function soon() { clearTimeout(waiting); waiting = setTimeout(answer, 120); shown(); }
 const columns = () => {
   const probe = make("span", $("answer"), "0".repeat(50)), wide = probe.getBoundingClientRect().width / 50;
   probe.remove();
@@ -265,27 +327,29 @@ $("form").addEventListener("submit", (event) => { event.preventDefault(); answer
 
 async function answer() {
   if (tab === "lectures") return;
-  const mine = ++asked, words = line(), asking = {line: words, text: saved}, view = QUESTIONS[tab].drawn?.(given());
+  clearTimeout(waiting);
+  waiting = 0;
+  const mine = running = ++asked, words = line(), asking = {line: words, text: saved}, view = QUESTIONS[tab].drawn?.(given());
+  const {tip: of} = given();
   shown();
-  $("answer").classList.add("busy");
   const slow = setTimeout(() => { $("stop").hidden = false; }, 1500);
   try {
     const found = await ask("run", words, columns());
     if (mine !== asked) return;
     answered = asking;
     show(found, $("answer"));
-    aged();
     Object.assign($("answer").dataset, {of: `robokin ${words}`, status: found.status});
     $("note").textContent = found.note;
     $("explain").hidden = tab !== "mark" || found.status === 2 || !WORKED[given().what];
     files(found.files);
-    if (view !== undefined && found.status !== 2) await picture(view);
+    if (view !== undefined && found.status !== 2) await picture(`${tips.has(of) ? ` --tip=${quoted(of)}` : ""}${view}`, of);
   } catch (error) {
     if (mine === asked) $("answer").replaceChildren(error.message);
   } finally {
     clearTimeout(slow);
     $("stop").hidden = true;
-    if (mine === asked) $("answer").classList.remove("busy");
+    if (mine === running) running = -1;
+    aged();
   }
 }
 function show(found, place) {
@@ -425,6 +489,7 @@ async function link() {
     parts.set("y", btoa(String.fromCharCode(...bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, ""));
   } else parts.set("r", original.id);
   if (pose) parts.set("q", pose);
+  if (tip) parts.set("tip", tip);
   if (tab !== "pose") parts.set("t", tab);
   if (tab === "lectures") parts.set("l", page);
   return `${location.href.split("#")[0]}#${parts}`;
@@ -439,21 +504,27 @@ async function follow() {
       const bytes = Uint8Array.from(atob(y.replace(/-/g, "+").replace(/_/g, "/")), (c) => c.charCodeAt(0));
       setText(new TextDecoder().decode(await packed(bytes, DecompressionStream)));
       original = {id: "", text: ""};
-      fresh = true;
+      another();
     } else await load(parts.get("r") || FIRST, false);
   } catch {
     moved = "The link is damaged; a robot of the library is shown instead.";
     await load(FIRST, false);
   }
+  tip = parts.get("tip") || "";
   await read();
+  if (tip !== (parts.get("tip") || "")) moved ||= `The robot has no tip ${parts.get("tip")}.`;
   if (parts.get("q") && valid) moveTo(parts.get("q").split(",").map(Number));
   if (moved) state(moved, true);
   if (parts.get("t") === "lectures") $("ask").scrollIntoView();
 }
+function another() {
+  fresh = true;
+  pose = tip = "";
+}
 async function load(id, now = true) {
   const value = await ask("description", id);
   original = {id, text: value};
-  fresh = true;
+  another();
   $("pick").value = id;
   setText(value);
   // What was typed for another robot goes with it.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robokin.formats.joint_counts import LETTERS
-from robokin.model import Mechanism, Robot, Tree, WheeledBase
+from robokin.model import CoupledRobot, Mechanism, Robot, Tree, WheeledBase
 from robokin.records.count_records import count_record, type_record
 from robokin.records.envelope import envelope
 from robokin.units import Units
@@ -153,6 +153,15 @@ def robot_record(robot: Robot, units: Units) -> dict[str, Any]:
         "redundancy": spare,
         "compared": "joints",
     }
+
+
+def jointed_record(entry: Robot | Tree, units: Units) -> dict[str, Any]:
+    """The count of a robot, or of a tree: of joints that follow others, too, where the robot has such."""
+    if isinstance(entry, CoupledRobot):
+        from robokin.formats.part import tree_of
+
+        entry = tree_of(entry)
+    return tree_record(entry, units) if isinstance(entry, Tree) else robot_record(entry, units)
 
 
 def tree_record(tree: Tree, units: Units) -> dict[str, Any]:

@@ -85,6 +85,14 @@ def test_tables_and_documents_say_what_hangs_on_what(call, write):
     assert "helical" in call("dof", write(SCREW)).text
 
 
+def test_freedoms_are_marked_as_they_are_counted(call, write):
+    for entry in (write(FINGER), write(SCREW, "screw.yaml"), "human-hand", "baxter", "planar3r"):
+        said = call("dof", entry, "--json").json
+        right = ["check", "dof", entry, "--expect", said["grubler"], "--mobility", said["mobility"]]
+        assert call(*right).status == 0
+        assert call(*right[:3], "--expect", said["grubler"] + 1).status == 3
+
+
 def test_other_commands_take_them(call, write):
     for text, q in ((PENDANT, "10,20,30,40,50,60"), (FINGER, "10,20,30"), (SCREW, "10,20,30")):
         path = write(text)

@@ -9,7 +9,10 @@ import sys
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+import robokin
 
 ROOT = Path(__file__).parent.parent.parent
 
@@ -90,6 +93,18 @@ def test_a_description_is_written_and_judged():
     assert engine.written("robot.yaml", "")["errors"] and engine.written("robot.yaml", "a: [")["errors"]
     with pytest.raises(ValueError, match="no robot"):
         engine.description("../../etc/passwd")
+
+
+def test_the_tips_of_a_tree_have_the_places_of_their_joint_values():
+    for name in ("shadow-hand", "human-hand", "yumi", "baxter"):
+        tree = robokin.load_tree(name)
+        found = engine.written("robot.yaml", engine.description(name))
+        assert [tip for tip, _ in found["tips"]] == list(tree.tips) and found["joints"] == tree.n
+        q = np.linspace(0.1, 0.9, tree.n)
+        for (tip, joints), pose in zip(found["tips"], robokin.tip_poses(tree, q), strict=True):
+            assert np.allclose(robokin.forward_kinematics(tree.robot(tip), q[joints]), pose)
+    assert engine.written("robot.yaml", engine.description("puma560"))["tips"] == []
+    assert engine.written("robot.yaml", "a: [")["tips"] == []
 
 
 def test_an_answer_that_fails_is_said_and_the_next_one_is_given(monkeypatch):

@@ -199,11 +199,7 @@ def test_each_kind_has_its_questions(address):
         found[name] = run("return [...$('tabs').children].map((tab) => tab.textContent)")
         assert run("return $('answer').dataset.status") == "0"
     assert found["four-bar"][:2] == found["car"][:2] == ["Freedoms", "Table"]
-    assert (
-        found["shadow-hand"][0] == "Pose"
-        and "Workspace" not in found["shadow-hand"]
-        and "Workspace" in found["planar2r"]
-    )
+    assert found["shadow-hand"] == found["planar2r"] and found["planar2r"][0] == "Pose"
     run("$('pick').value = 'nothing'; $('load').click(); await until(() => text('state'))")
     assert run("return text('state')") == "There is no robot or mechanism nothing in the library."
 
@@ -243,6 +239,91 @@ def test_an_answer_to_what_stood_there_before_says_so(address):
     edit = "playground.setText(playground.text().replace('a1: 1', 'a1: 2')); await playground.read(); "
     assert run(f"{edit} return [text('command'), {old}]") == ["robokin ik robot.yaml --xy=1,0.5", True]
     assert run(f"await send(); return {old}") is False
+
+
+def test_an_answer_is_dimmed_from_the_change_on(address):
+    run = opened(address, "#r=planar2r&t=table")
+    run("await until(() => text('command').includes('show')); await settled();")
+    looks = "[$('answer').className, $('answer').getAttribute('aria-busy')]"
+    edit = (
+        "await settled(); const field = $('yaml'); field.value = field.value.replace('NEW', 'OLD');"
+        "field.dispatchEvent(new Event('input'));"
+    )
+    if BUILT:
+        edit = "await settled(); playground.setText(playground.text().replace('NEW', 'OLD'));"
+    first = edit.replace("NEW", "a1: 1").replace("OLD", "a1: 2")
+    # At once, before anything is read; what comes then is the answer to what stands there.
+    assert run(f"{first} return {looks}") == ["old busy", "true"]
+    assert run(f"await settled(); return [text('command'), ...{looks}]") == ["robokin show robot.yaml", "", "false"]
+    assert run("return text('answer')") == engine.run("show robot.yaml", 120)["text"]
+    run("await choose('pose'); await settled();")
+    wrong = edit.replace("NEW", "a1: 2").replace("OLD", "a1: two")
+    assert run(f"{wrong} return {looks}") == ["busy", "true"]
+    assert run(f"await until(() => text('mistakes')); await settled(); return {looks}") == ["old", "false"]
+    assert run(f"{edit.replace('NEW', 'a1: two').replace('OLD', 'a1: 3')} return {looks}") == ["old busy", "true"]
+    assert run(f"await settled(); return [text('mistakes'), ...{looks}]") == ["", "", "false"]
+    assert run("return text('answer')") == engine.run("fk robot.yaml --q=0,0", 120)["text"]
+
+
+def test_of_a_robot_with_several_tips_one_is_asked_about(address):
+    run = opened(address, "#r=human-hand")
+    run("await until(() => text('command').includes('human-hand')); await settled();")
+    tips = "return [...$('form').elements.tip.options].map((one) => one.textContent)"
+    names = ["thumb", "index", "middle", "ring", "little"]
+    assert run(tips) == ["all tips", *names]
+    q = [float(place) for place in range(1, 22)]
+    # The sliders are those of the whole hand; the question has the values of the tip's chain.
+    run(f"arm().setQ({q}); await until(() => $('form').elements.q.value.startsWith('1,2,3,')); await settled();")
+    assert run("fill('tip', 'index'); await settled(); return text('command')") == (
+        "robokin fk human-hand --tip=index --q=6,7,8,9"
+    )
+    assert run("return text('answer')") == engine.run("fk human-hand --tip=index --q=6,7,8,9", 120)["text"]
+    run("await choose('jacobian'); await settled();")
+    assert run(tips) == names
+    assert run("return text('command')") == "robokin jacobian human-hand --tip=index --q=6,7,8,9"
+    # What was typed for one tip is not taken for another's.
+    assert run(
+        "fill('q', '1,2,3,4'); await send(); fill('tip', 'thumb'); await settled(); return text('command')"
+    ) == "robokin jacobian human-hand --tip=thumb --q=1,2,3,4,5"  # fmt: skip
+    for tab in ("pose", "solutions", "jacobian", "singular", "steps", "freedoms", "table"):
+        run(f"await choose('{tab}'); fill('tip', 'ring');")
+        run("const one = $('form').elements.target; await until(() => !one || one.value);")
+        assert run("await send(); return [$('answer').dataset.status, text('command').includes(' --tip=ring')]") == [
+            "0", True,
+        ], tab  # fmt: skip
+    # The solutions stand alone in the picture: its sliders are the chain's, the others' values are kept.
+    run("await choose('solutions'); await until(() => $('form').elements.target.value); await send();")
+    run("await until(() => arm().n === 4);")
+    run("arm().setQ([20, 30, 40, 50]); await choose('pose');")
+    run("await until(() => text('command').includes('=20,30,')); await settled();")
+    assert run("return text('command')") == "robokin fk human-hand --tip=ring --q=20,30,40,50"
+    link = run("return await playground.link()")
+    assert "&tip=ring" in link
+    run(f"await choose('mark'); fill('given', '{engine_place('--tip=ring --q=20,30,40,50')}');")
+    assert "1 of 1 answer right" in run("return await send()")
+    assert "0 of 1 answer right" in run("fill('tip', 'index'); return await send()")
+    assert "1 of 1 answer right" in run("fill('what', 'freedoms'); fill('count', '21'); return await send()")
+    assert run("return [$('form').elements.tip.parentElement.hidden, text('command').includes('--tip')]") == [
+        True, False,
+    ]  # fmt: skip
+    again = opened(address, link.removeprefix(address))
+    again("await until(() => text('command').includes('--tip=ring')); await settled();")
+    again("await until(() => text('command').includes('=20,30,')); await settled();")
+    assert again("return [text('command'), arm().n]") == ["robokin fk human-hand --tip=ring --q=20,30,40,50", 21]
+    assert again("return arm().q().slice(0, 3)") == [1, 2, 3]
+    lost = opened(address, "#r=human-hand&tip=toe")
+    assert lost("await until(() => text('state')); return text('state')") == "The robot has no tip toe."
+    # A robot of one tip has no such field.
+    lost("$('pick').value = 'planar2r'; $('load').click(); await until(() => text('command').includes('planar2r'));")
+    assert lost("await settled(); return [Boolean($('form').elements.tip), text('command')]") == [
+        False, "robokin fk planar2r --q=0,0",
+    ]  # fmt: skip
+
+
+def engine_place(words):
+    """Where the human hand's tip is, as an answer is typed."""
+    at = json.loads(engine.run(f"fk human-hand {words} --json")["text"])["pose"]["position"]
+    return ",".join(f"{value:.4f}" for value in at)
 
 
 def test_a_place_is_a_target_as_its_label_says(address):

@@ -83,14 +83,14 @@ def _counted(links: str | None, joints: str | None, space: str | None) -> dict[s
 
 def _described(name: str, overrides: dict[str, str]) -> dict[str, Any]:
     """The count and the mobility of what a description describes."""
-    from robokin.cli.arguments import load_entry
+    from robokin.cli.arguments import load_noted
     from robokin.mobility.verdict import mobility_of
-    from robokin.model import Mechanism, Robot
-    from robokin.records.freedom_records import mechanism_record, robot_record
+    from robokin.model import Mechanism, Robot, Tree
+    from robokin.records.freedom_records import jointed_record, mechanism_record
 
-    entry = load_entry(name, overrides)
+    entry = load_noted(name, overrides, None, None)
     if isinstance(entry, Mechanism):
         return mechanism_record(mobility_of(entry), entry.units, 0)
-    if isinstance(entry, Robot):
-        return robot_record(entry, entry.units)
+    if isinstance(entry, Robot | Tree):
+        return jointed_record(entry, entry.units)
     raise InputError(f"{name} is a wheeled base, expected a mechanism or a robot")

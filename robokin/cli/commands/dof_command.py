@@ -138,24 +138,17 @@ def _described(
     name: str, kind: str, motion: dict[str, Any], seed: int, description: DescriptionOptions, mode: int | None
 ) -> dict[str, Any] | bytes:  # fmt: skip
     """The document about what a description describes, or the bytes of its motion."""
-    from robokin.formats.part import tree_of
-    from robokin.model import CoupledRobot, Mechanism, Robot, Tree
+    from robokin.model import Mechanism, Robot, Tree
 
     entry = description.anything(name, mode)
     units = description.over(entry.units)
     if isinstance(entry, Mechanism):
         return _mechanism(entry, units, kind, motion, seed, description.words(name))
     _refuse(motion, "is for mechanisms", "one of those")
-    if isinstance(entry, CoupledRobot):
-        entry = tree_of(entry)
-    if isinstance(entry, Tree):
-        from robokin.records.freedom_records import tree_record
+    if isinstance(entry, Robot | Tree):
+        from robokin.records.freedom_records import jointed_record
 
-        return tree_record(entry, units)
-    if isinstance(entry, Robot):
-        from robokin.records.freedom_records import robot_record
-
-        return robot_record(entry, units)
+        return jointed_record(entry, units)
     from robokin.mobility.manoeuvrability import manoeuvrability_of
     from robokin.records.freedom_records import wheeled_record
 
