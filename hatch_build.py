@@ -33,6 +33,7 @@ MODULE = [
     "descents.c",
     "elimination.c",
     "number_text.c",
+    "solution_objects.c",
     "swivel_forms.c",
     "told_apart.c",
 ]

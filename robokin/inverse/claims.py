@@ -11,6 +11,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +63,7 @@ class Claims:
         )
 
 
+@cache
 def counted_sentence(N: int | None, real: int, branches: bool) -> str:
     """What a list rests on that was counted: N solutions or branches, of which some are real."""
     if branches and real != N:

@@ -27,9 +27,10 @@ from robokin.inverse.analysis import analysis_of, known_analysis
 from robokin.inverse.held_drive import drive_left
 from robokin.inverse.held_forms import HeldForms, held_forms
 from robokin.inverse.later_fields import changed, nearest_unknown, with_later_nearest
+from robokin.inverse.one_answer import OneAnswer
 from robokin.inverse.one_target_arm import OneTargetArm, one_target_arm
 from robokin.inverse.solution_names import branch_names
-from robokin.inverse.solutions import Arc, BatchResult, Family, Question, Result, Solution, named_later
+from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution, named_later, told_result
 from robokin.kernel.chain import chain_of, row_standing
 from robokin.kernel.facts import fact, tell
 from robokin.model import CoupledRobot, Robot
@@ -83,6 +84,13 @@ class HeldArm:
     def __getstate__(self) -> dict[str, Any]:
         """The fields, for copies and pickles; code, and what the native kernel knows, are found out again."""
         return {part.name: getattr(self, part.name) for part in fields(self)} | {"forms": None}
+
+    @cached_property
+    def pattern(self) -> Array:
+        """(n,) the values of the joints that are held, NaN elsewhere."""
+        values = np.full(self.n, np.nan)
+        values[self.joints] = self.values
+        return values
 
     def own(self, q: Array) -> Array:
         """Those of joint values (..., n) that are not held, (..., n - h)."""
@@ -187,9 +195,12 @@ def with_held_joints(robot: Robot, arm: HeldArm, batch: BatchResult) -> BatchRes
     return replace(batch, q=q, within_limits=batch.within_limits & arm.inside, single=single, branches=branches)
 
 
-def whole_result(robot: Robot, arm: HeldArm, answer: Callable[[Question], Result], question: Question) -> Result:
-    """The answer of the part to a question as one of the robot: see `with_held_joints`."""
-    return _whole_result(arm, answer(question), robot if analysis_of(robot).redundancy == 0 else None)
+def whole_answer(robot: Robot, arm: HeldArm, answer: OneAnswer, question: dict[str, Any]) -> dict[str, Any]:
+    """The fields of the part's answer to a question as one of the robot: see `with_held_joints`."""
+    named = robot if analysis_of(robot).redundancy == 0 else None
+    if arm.inside:
+        return answer.told(question, arm.pattern, named)
+    return vars(_whole_result(arm, told_result(answer.told(question)), named))
 
 
 def own_near(arm: HeldArm, near: Array | None) -> Array | None:
@@ -274,13 +285,13 @@ def _whole_solutions(arm: HeldArm, shown: tuple[Solution, ...], named: Robot | N
             return [solution.branch for solution in shown]
         return _names(named, arm.whole(np.array([solution.q for solution in shown])))
 
-    return named_later(
-        partial(_of, names),
-        arm.whole(np.array([solution.q for solution in shown]).reshape(-1, len(arm.free))),
-        [solution.within_limits and arm.inside for solution in shown],
-        [(solution.position_error, solution.angle_error) for solution in shown],
-        [arm.numbers(solution.free) if solution.free else () for solution in shown],
-    )
+    told = [
+        (*solution.q.tolist(), solution.position_error, solution.angle_error, solution.within_limits and arm.inside)
+        for solution in shown
+    ]
+    table = np.array(told, dtype=np.float64).reshape(len(shown), len(arm.free) + 3)
+    free = [arm.numbers(solution.free) if solution.free else () for solution in shown]
+    return named_later(partial(_of, names), table, len(arm.free), free, pattern=arm.pattern)
 
 
 def _names(robot: Robot, q: Array) -> list[str]:

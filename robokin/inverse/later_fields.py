@@ -14,12 +14,12 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, TypeVar
 
-MOTIONS, WHY, PROOF = "_alone", "_why", "_proof"
+MOTIONS, WHY, PROOF, QUESTION = "_alone", "_why", "_proof", "_question"
 """Where a result keeps the functions."""
 
 FOUND_BY = {
     "families": MOTIONS, "families_complete": MOTIONS, "reason": WHY, "nearest": WHY, "basis": PROOF,
-    "certificate": PROOF,
+    "certificate": PROOF, "question": QUESTION,
 }  # fmt: skip
 """Which of them finds a field."""
 

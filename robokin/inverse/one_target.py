@@ -86,7 +86,10 @@ def solve_one(
         return None
     if native is not None and arm.kernel is not None:
         known = native.solution(arm.kernel, T, limits, near, arm.elimination)
-        return None if known is None else OneAnswer(arm, known[1], known[2], known[0], limits, most, near)
+        if known is None:
+            return None
+        table, copy, tried, inside, turns = known
+        return OneAnswer(arm, copy, tried, table, limits, most, near, inside, int(turns))
     closing = _closing(arm.loop, T)[None]
     target = T[:3].T.ravel().tolist()
     proven = _by_closed_form(arm, closing, target) if arm.form is not None else _by_elimination(arm, closing, target)
@@ -106,7 +109,7 @@ def solve_one(
     if limits and not all(map(partial(_well_placed, arm), inside, every)):
         return None
     table = np.array([(*q, *rest) for q, *rest in zip(every, position, angle, inside, strict=True)])
-    return OneAnswer(arm, np.array(T), tried, table, limits, most, near)
+    return OneAnswer(arm, np.array(T), tried, table, limits, most, near, sum(inside), None)
 
 
 def _closing(loop: Loop, T: Array) -> Array:

@@ -31,9 +31,10 @@ def result_of(request: Request, block: TargetBlock, i: int) -> Result:
     """The answer for target i of a block: names, self-motions, reasons."""
     analysis, found = request.analysis, block.found
     rows = slice(np.searchsorted(found.index, i), np.searchsorted(found.index, i, side="right"))
-    q, position, angle = found.q[rows], found.position[rows].tolist(), found.angle[rows].tolist()
-    inside, errors = block.inside[rows].tolist(), zip(position, angle, strict=True)
-    solutions = named_later(partial(_name, block), q, inside, errors, partial(_free, block), int(rows.start))
+    q = found.q[rows]
+    table = np.column_stack([q, found.position[rows], found.angle[rows], block.inside[rows]])
+    name, free = partial(_name, block), partial(_free, block)
+    solutions = named_later(name, table, q.shape[1], free, first=int(rows.start))
     method = "numeric" if request.method == "numeric" else analysis.method
     sets = families_of(request, block, i, q)
     basis = bool(block.claims.basis[i])

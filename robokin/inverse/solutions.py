@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
+
+import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.brief import Answer, Brief
 from robokin.errors import InputTypeError
 from robokin.expected import described
-from robokin.inverse.later_fields import FOUND_BY, changed, nothing_yet, with_later_families
+from robokin.inverse.later_fields import FOUND_BY, QUESTION, changed, nothing_yet, with_later_families
+from robokin.kernel.native_kernel import native
 from robokin.model import Robot
 
 
@@ -61,33 +64,62 @@ class SolutionInMaking(Brief):
 
 def named_later(
     name: Callable[[int], str],
-    q: Iterable[Array],
-    within_limits: Iterable[bool],
-    errors: Iterable[tuple[float, float]],
-    free: Iterable[tuple[int, ...]] | Callable[[int], tuple[int, ...]],
+    table: Array,
+    joints: int,
+    free: tuple[int, ...] | list[tuple[int, ...]] | Callable[[int], tuple[int, ...]] = (),
+    rows: list[int] | None = None,
+    within: bool = False,
+    pattern: Array | None = None,
     first: int = 0,
 ) -> tuple[Solution, ...]:
-    """Solutions q (k, n) [rad | m] whose branches are found when they are first asked for.
+    """Solutions whose branches are found when they are first asked for.
 
-    errors: of each the distance and the angle [m, rad]; name: gives the branch of the one in a place, counted from
-    `first`, and `free`, if it is a function, its free joints.
+    table: (k, joints + 3 or more) of each the joint values [rad | m], the distance and the angle that it lacks [m, rad]
+    and whether it is within the limits; rows: which of them, in order; within: only those within the limits;
+    name: gives the branch of the one in a row, counted from `first`; free: what is free of all, of each row, or a
+    function like `name`; pattern: (n,) values of joints that are held, NaN where those of the table stand.
     """
-    made: list[Any] = []
-    known_free = None if callable(free) else iter(free)
-    for place, (one_q, inside, (position, angle)) in enumerate(zip(q, within_limits, errors, strict=True), first):
+    if native is not None:
+        made: tuple[Solution, ...] = native.solution_objects(
+            Solution, name, table, joints, free, rows, within, pattern, first
+        )
+        return made
+    return tuple(_named_later(name, table, joints, free, rows, within, pattern, first))
+
+
+def _named_later(
+    name: Callable[[int], str],
+    table: Array,
+    joints: int,
+    free: tuple[int, ...] | list[tuple[int, ...]] | Callable[[int], tuple[int, ...]],
+    rows: list[int] | None,
+    within: bool,
+    pattern: Array | None,
+    first: int,
+) -> Iterator[Solution]:
+    """The same without the native kernel."""
+    if pattern is None:
+        q = table[:, :joints].copy()
+    else:
+        q = np.tile(pattern, (len(table), 1))
+        q[:, np.isnan(pattern)] = table[:, :joints]
+    told: list[list[float]] = table[:, joints : joints + 3].tolist()
+    for row in range(len(told)) if rows is None else rows:
+        position, angle, inside = told[row]
+        if within and not inside:
+            continue
         one: Any = SolutionInMaking()
-        one.q = one_q
-        one.within_limits = inside
+        one.q = q[row]
+        one.within_limits = inside != 0.0
         one.position_error = position
         one.angle_error = angle
-        one._name = (name, place)
-        if known_free is None:
-            one._free = (free, place)
+        one._name = (name, first + row)
+        if callable(free):
+            one._free = (free, first + row)
         else:
-            one.free = next(known_free)
+            one.free = free[row] if type(free) is list else free
         one.__class__ = Solution
-        made.append(one)
-    return tuple(made)
+        yield one
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -189,19 +221,21 @@ class Result(Answer):
     certificate: str = field(default_factory=str)
     all_known: bool = False
     families: tuple[Family, ...] = field(default_factory=tuple)
-    question: Question | None = None
+    question: Question | None = field(default_factory=nothing_yet)
     families_complete: bool = field(default_factory=bool)
 
     def __getstate__(self) -> dict[str, Any]:
         """The fields, and what finds self-motions that are not worked out yet, for copies and pickles."""
         # Worked out now: what finds it knows a whole block of targets.
-        found = {name: getattr(self, name) for name in ("nearest", "basis") if FOUND_BY[name] in self.__dict__}
+        found = {
+            name: getattr(self, name) for name in ("nearest", "basis", "question") if FOUND_BY[name] in self.__dict__
+        }
         return {**self.__dict__, **found}
 
     if not TYPE_CHECKING:  # who reads the types knows the fields alone
 
         def __getattr__(self, name: str) -> Any:
-            """The self-motions, the proof, or the reason and what is nearest, where they are not worked out yet."""
+            """What is not worked out yet: question, self-motions, proof, reason, what is nearest."""
             known = self.__dict__
             place = FOUND_BY.get(name)
             find = known.get(place)
@@ -241,36 +275,53 @@ class Result(Answer):
         return f"<{count}, {'these are all' if self.complete else 'perhaps not all'}: {self.method}>"
 
 
-FIELDS = frozenset(part.name for part in fields(Result))
-"""What is asked of a result."""
-
-NOT_SAID = {"reason": None, "nearest": None, "families": ()}
-"""Of a result that has solutions and none that is one of many."""
+def question_later(robot: Robot, T: Array, limits: bool, hold: Mapping[int, float]) -> dict[str, Any]:
+    """The field of a question for a whole pose T (4, 4) [m], which is made when it is first asked for."""
+    return {QUESTION: partial(_question, robot, T, limits, hold)}
 
 
-def regular_result(**told: Any) -> Result:
-    """A result of which all fields are told but those in `NOT_SAID`, made in a fraction of the usual time."""
+def _question(robot: Robot, T: Array, limits: bool, hold: Mapping[int, float]) -> dict[str, Any]:
+    return {"question": Question(robot, T, "pose", limits, hold)}
+
+
+def told_result(told: dict[str, Any]) -> Result:
+    """A result by its fields, or by what finds them, made in a fraction of the usual time; it keeps the mapping."""
     one = object.__new__(Result)
-    one.__dict__.update(NOT_SAID, **told)
+    object.__setattr__(one, "__dict__", told)
     return one
 
 
+_known_of: Callable[[object], dict[str, Any]] = vars(Brief)["__dict__"].__get__
+"""What an object holds, also where its class has something else for `__dict__`."""
+
+
+def _asked_first(name: str) -> property:
+    """What stands for a field, and for all of them, until a result is made."""
+
+    def found(one: UnmadeResult) -> Any:
+        known = _known_of(one)
+        tell = known.get("_tell")
+        if tell is not None:  # else another thread has made it meanwhile
+            known.update(tell())
+            object.__setattr__(one, "__class__", Result)
+            known.pop("_tell", None)
+        return getattr(one, name)
+
+    return property(found)
+
+
 class UnmadeResult(Result):
-    """A result that is made when something of it is first asked for, and is a `Result` from then on."""
+    """A result that is made when something of it is first asked for, and is a `Result` from then on.
 
-    def __init__(self, make: Callable[[], Result]) -> None:
-        object.__setattr__(self, "_make", make)
+    tell: gives its fields, or what finds them.
+    """
 
-    def __getattribute__(self, name: str) -> Any:
-        """What is asked for, made before."""
-        if name in FIELDS or name == "__dict__":
-            known = object.__getattribute__(self, "__dict__")
-            make = known.get("_make")
-            if make is not None:
-                known.update(vars(make()))
-                object.__setattr__(self, "__class__", Result)
-                known.pop("_make", None)
-        return object.__getattribute__(self, name)
+    if not TYPE_CHECKING:  # who reads the types knows the fields alone
+        locals().update({part.name: _asked_first(part.name) for part in fields(Result)})
+        __dict__ = _asked_first("__dict__")
+
+    def __init__(self, tell: Callable[[], dict[str, Any]]) -> None:
+        object.__setattr__(self, "_tell", tell)
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> str | tuple[Any, ...]:
         """As the `Result` that it is from now on."""

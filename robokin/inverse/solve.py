@@ -17,12 +17,12 @@ from robokin.inverse.analysis import Task, analysis_of
 from robokin.inverse.answered_batch import answered_batch
 from robokin.inverse.coupled_joints import solve_coupled
 from robokin.inverse.full_turns import check_turns, with_full_turns, with_turn_counts
-from robokin.inverse.hold import HeldArm, check_held_limits, held_arm, own_near, whole_result, with_held_joints
+from robokin.inverse.hold import HeldArm, check_held_limits, held_arm, own_near, whole_answer, with_held_joints
 from robokin.inverse.later_fields import changed
 from robokin.inverse.one_answer import OneAnswer
 from robokin.inverse.one_target import plain_pose, solve_one
 from robokin.inverse.one_target_arm import one_target_arm
-from robokin.inverse.solutions import BatchResult, Question, Result, UnmadeResult
+from robokin.inverse.solutions import BatchResult, Question, Result, UnmadeResult, question_later
 from robokin.inverse.swivel_block import SwivelSolution, one_swivel_arm, solve_swivel
 from robokin.inverse.target_block import Method, Request
 from robokin.jobs.ordered_map import MOST_CORES
@@ -81,7 +81,7 @@ def solve_ik(
             "near": None if near is None else np.array(near), "hold": dict(hold or {}) or None,
         }  # fmt: skip
         batch = replace(batch, alone=partial(_alone, robot, asked))
-    return UnmadeResult(partial(batch.__getitem__, 0)) if alone else batch
+    return UnmadeResult(partial(_first, batch)) if alone else batch
 
 
 def _one_target(
@@ -137,25 +137,30 @@ def _made(
     method: Method,
     seed: int,
     near: Array | None = None,
-) -> Result:
-    """The result of an answer, when it is looked at."""
-    question = Question(robot, answer.T, "pose", answer.limits, hold)
-    if not answer.reached:
-        rest: dict[str, Any] = {"most": answer.most, "seed": seed, "hold": hold or None, "motions": True}
-        blocks = partial(solve_many, robot, answer.T, answer.limits, near, method, **rest)
-        return answer.unreached(question, lambda: blocks()[0])
-    return answer.result(question) if part is None else whole_result(robot, part, answer.result, question)
+) -> dict[str, Any]:
+    """The fields of an answer, when it is looked at."""
+    question = question_later(robot, answer.T, answer.limits, hold)
+    if answer.reached:
+        return answer.told(question) if part is None else whole_answer(robot, part, answer, question)
+    rest: dict[str, Any] = {"most": answer.most, "seed": seed, "hold": hold or None, "motions": True}
+    blocks = partial(solve_many, robot, answer.T, answer.limits, near, method, **rest)
+    return vars(answer.unreached(question, lambda: blocks()[0]))
 
 
-def _made_of_motions(known: SwivelSolution, method: Method, most: int | None, seed: int) -> Result:
-    """The result of an answer with self-motions, when it is looked at."""
+def _made_of_motions(known: SwivelSolution, method: Method, most: int | None, seed: int) -> dict[str, Any]:
+    """The fields of an answer with self-motions, when it is looked at."""
     robot, T = known.known.robot, known.T
     question = Question(robot, T, "pose", True, {})
     result = known.result(question)
     if result is None:
         batch = solve_many(robot, T[None], True, None, method, "pose", most, seed, motions=True)
         result = changed(batch[0], question=question)
-    return result
+    return vars(result)
+
+
+def _first(batch: BatchResult) -> dict[str, Any]:
+    """The fields of the answer for a batch's only target."""
+    return vars(batch[0])
 
 
 def _alone(robot: Robot, arguments: dict[str, Any], T: Array) -> Result:

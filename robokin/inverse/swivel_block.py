@@ -164,8 +164,9 @@ class SwivelSolution:
         q, robot = self.table[:, :7].copy(), self.known.robot
         names = cache(partial(branch_names, robot, q, np.zeros(len(q), dtype=np.intp)))
         free = cache(partial(free_at, self.known.analysis, q))
-        inside, errors = [True] * len(q), self.table[:, 7:9].tolist()
-        solutions = named_later(partial(_at, names), q, inside, errors, partial(_at, free))
+        table = self.table.copy()
+        table[:, 9] = 1.0  # all are within the limits
+        solutions = named_later(partial(_at, names), table, 7, partial(_at, free))
         counts = {"closing": self.closing, "within_limits": self.within, "listed": len(q)}
         counts["turns"] = sum(count_equivalents(robot, q)) if self.known.turned else len(q)
         return Result(

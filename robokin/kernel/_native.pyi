@@ -1,5 +1,8 @@
 """The native kernel: see native/module.c."""
 
+from collections.abc import Callable
+from typing import Any
+
 from robokin.arrays import Array, Flags, Index
 
 interface: int
@@ -29,10 +32,21 @@ def form(
 ) -> object: ...
 def solution(
     form: object, T: Array, limits: bool, wish: Array | None, elimination: object | None
-) -> tuple[Array, Array, int] | None: ...
+) -> tuple[Array, Array, int, int, float] | None: ...
 def solutions(
     form: object, T: Array, limits: bool, wish: Array | None
 ) -> tuple[Flags, Index, Index, Array, Array, Array, Flags]: ...
+def solution_objects(
+    kind: type,
+    name: Callable[[int], str],
+    table: Array,
+    joints: int,
+    free: object,
+    rows: list[int] | None,
+    within: bool,
+    pattern: Array | None,
+    first: int,
+) -> tuple[Any, ...]: ...
 def signs(chain: object, size: float, tape: Array, constants: Array, places: Array) -> object: ...
 def sides(signs: object, q: Array) -> Index: ...
 def rigid(T: Array) -> bool: ...

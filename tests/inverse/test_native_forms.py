@@ -89,6 +89,9 @@ def test_one_pose_is_answered_as_by_python(instructions, rng):
             )
             np.testing.assert_array_equal(mine[:, 8], theirs[:, 8])
             np.testing.assert_array_equal(mine[:, 9], [other._equivalents(k) for k in range(len(theirs))])
+            inside = mine[:, 8] != 0.0
+            assert (one.inside, one.turns) == (inside.sum(), mine[inside, 9].sum())
+            assert (one.inside, one.tried) == (other.inside, other.tried)
             assert np.max(mine[:, 6:8]) < 1e-12
     assert answered > 0.9 * asked > 50
 
@@ -158,7 +161,7 @@ def test_mirrored_and_far_and_turned_targets_are_left_to_others(rng):
             assert native.solutions(arm.kernel, np.stack([wrong, T]), True, None)[0].tolist() == [False, True]
     far = T.copy()
     far[0, 3] = 9.0
-    rows, _, tried = native.solution(arm.kernel, far, True, None, None)
+    rows, _, tried, *_ = native.solution(arm.kernel, far, True, None, None)
     assert (rows.shape, tried) == ((0, 10), 0)
     plain, count, listed, *_ = native.solutions(arm.kernel, np.stack([far, T]), True, None)
     assert (plain.tolist(), count.tolist(), int(listed[0])) == ([True, True], [0, 8], 0)

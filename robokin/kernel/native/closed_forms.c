@@ -280,8 +280,9 @@ static double equivalents(const Form *form, const double *q) {
     return count;
 }
 
-/* solution(form, T, limits, wish, elimination): a row q, position, angle, inside, equivalents for each solution, and the target as it
-   was; None where others are to look at it. No row where there clearly is no solution. */
+/* solution(form, T, limits, wish, elimination): a row q, position, angle, inside, equivalents for each solution, the target as
+   it was, how many candidates there were, and how many solutions are within the limits, with their equivalents how many;
+   None where others are to look at it. No row where there clearly is no solution. */
 static PyObject *solution(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     double T[16], wish[SIX], q[MOST_CANDIDATES][SIX], position[MOST_CANDIDATES], angle[MOST_CANDIDATES];
     unsigned char inside[MOST_CANDIDATES];
@@ -317,7 +318,8 @@ static PyObject *solution(PyObject *self, PyObject *const *args, Py_ssize_t coun
     PyObject *rows = PyArray_EMPTY(2, shape, NPY_DOUBLE, 0);
     PyObject *target = rows ? PyArray_EMPTY(2, four, NPY_DOUBLE, 0) : NULL, *both = NULL;
     if (target) {
-        double *to = PyArray_DATA((PyArrayObject *)rows);
+        double *to = PyArray_DATA((PyArrayObject *)rows), turns = 0.0;
+        int within = 0;
         memcpy(PyArray_DATA((PyArrayObject *)target), T, sizeof(T));
         for (int k = 0; k < found; k++, to += COLUMNS) {
             memcpy(to, q[k], SIX * sizeof(double));
@@ -325,8 +327,10 @@ static PyObject *solution(PyObject *self, PyObject *const *args, Py_ssize_t coun
             to[SIX + 1] = angle[k];
             to[SIX + 2] = inside[k];
             to[SIX + 3] = equivalents(known, q[k]);
+            within += inside[k] != 0;
+            turns += inside[k] ? to[SIX + 3] : 0.0;
         }
-        both = Py_BuildValue("OOi", rows, target, tried);
+        both = Py_BuildValue("OOiid", rows, target, tried, within, turns);
     }
     Py_XDECREF(rows);
     Py_XDECREF(target);

@@ -479,6 +479,7 @@ static PyMethodDef *const more_methods[] = {
     descent_methods,
     elimination_methods,
     number_text_methods,
+    solution_object_methods,
     swivel_methods,
     told_apart_methods,
     NULL,

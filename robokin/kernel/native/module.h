@@ -59,7 +59,7 @@ typedef struct {
 
 /* Methods of the other files. */
 extern PyMethodDef closed_form_methods[], descent_methods[], elimination_methods[], number_text_methods[],
-    swivel_methods[], told_apart_methods[];
+    solution_object_methods[], swivel_methods[], told_apart_methods[];
 
 /* The set in use. */
 extern Lanes lanes;
