@@ -30,7 +30,8 @@ from robokin.inverse.later_fields import changed, nearest_unknown, with_later_ne
 from robokin.inverse.one_answer import OneAnswer
 from robokin.inverse.one_target_arm import OneTargetArm, one_target_arm
 from robokin.inverse.solution_names import branch_names
-from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution, named_later, told_result
+from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution, named_later
+from robokin.inverse.unmade_result import told_result
 from robokin.kernel.chain import chain_of, row_standing
 from robokin.kernel.facts import fact, tell
 from robokin.model import CoupledRobot, Robot

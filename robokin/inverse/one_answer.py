@@ -22,8 +22,9 @@ from robokin.inverse.later_fields import with_later_nearest, with_later_proof
 from robokin.inverse.one_target_arm import OneTargetArm
 from robokin.inverse.single_answer import FAR
 from robokin.inverse.solution_names import branch_names
-from robokin.inverse.solutions import Result, Solution, named_later, told_result
+from robokin.inverse.solutions import Result, Solution, named_later
 from robokin.inverse.target_block import OUTSIDE
+from robokin.inverse.unmade_result import told_result
 from robokin.model import Robot
 from robokin.spatial.angles import TURN
 

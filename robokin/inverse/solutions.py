@@ -13,7 +13,7 @@ from robokin.arrays import Array, Flags, Index
 from robokin.brief import Answer, Brief
 from robokin.errors import InputTypeError
 from robokin.expected import described
-from robokin.inverse.later_fields import FOUND_BY, QUESTION, changed, nothing_yet, with_later_families
+from robokin.inverse.later_fields import FOUND_BY, changed, nothing_yet, with_later_families
 from robokin.kernel.native_kernel import native
 from robokin.model import Robot
 
@@ -273,60 +273,6 @@ class Result(Answer):
             return f"<no solution: {self.reason}>"
         count = "1 solution" if len(self) == 1 else f"{len(self)} solutions"
         return f"<{count}, {'these are all' if self.complete else 'perhaps not all'}: {self.method}>"
-
-
-def question_later(robot: Robot, T: Array, limits: bool, hold: Mapping[int, float]) -> dict[str, Any]:
-    """The field of a question for a whole pose T (4, 4) [m], which is made when it is first asked for."""
-    return {QUESTION: partial(_question, robot, T, limits, hold)}
-
-
-def _question(robot: Robot, T: Array, limits: bool, hold: Mapping[int, float]) -> dict[str, Any]:
-    return {"question": Question(robot, T, "pose", limits, hold)}
-
-
-def told_result(told: dict[str, Any]) -> Result:
-    """A result by its fields, or by what finds them, made in a fraction of the usual time; it keeps the mapping."""
-    one = object.__new__(Result)
-    object.__setattr__(one, "__dict__", told)
-    return one
-
-
-_known_of: Callable[[object], dict[str, Any]] = vars(Brief)["__dict__"].__get__
-"""What an object holds, also where its class has something else for `__dict__`."""
-
-
-def _asked_first(name: str) -> property:
-    """What stands for a field, and for all of them, until a result is made."""
-
-    def found(one: UnmadeResult) -> Any:
-        known = _known_of(one)
-        tell = known.get("_tell")
-        if tell is not None:  # else another thread has made it meanwhile
-            known.update(tell())
-            object.__setattr__(one, "__class__", Result)
-            known.pop("_tell", None)
-        return getattr(one, name)
-
-    return property(found)
-
-
-class UnmadeResult(Result):
-    """A result that is made when something of it is first asked for, and is a `Result` from then on.
-
-    tell: gives its fields, or what finds them.
-    """
-
-    if not TYPE_CHECKING:  # who reads the types knows the fields alone
-        locals().update({part.name: _asked_first(part.name) for part in fields(Result)})
-        __dict__ = _asked_first("__dict__")
-
-    def __init__(self, tell: Callable[[], dict[str, Any]]) -> None:
-        object.__setattr__(self, "_tell", tell)
-
-    def __reduce_ex__(self, protocol: SupportsIndex) -> str | tuple[Any, ...]:
-        """As the `Result` that it is from now on."""
-        vars(self)
-        return Result.__reduce_ex__(self, protocol)
 
 
 def _at(known: list[Any], i: int) -> Any:

@@ -22,9 +22,10 @@ from robokin.inverse.later_fields import changed
 from robokin.inverse.one_answer import OneAnswer
 from robokin.inverse.one_target import plain_pose, solve_one
 from robokin.inverse.one_target_arm import one_target_arm
-from robokin.inverse.solutions import BatchResult, Question, Result, UnmadeResult, question_later
+from robokin.inverse.solutions import BatchResult, Question, Result
 from robokin.inverse.swivel_block import SwivelSolution, one_swivel_arm, solve_swivel
 from robokin.inverse.target_block import Method, Request
+from robokin.inverse.unmade_result import UnmadeResult, question_later
 from robokin.jobs.ordered_map import MOST_CORES
 from robokin.kernel.native_kernel import native
 from robokin.model import CoupledRobot, Robot, expect_robot
