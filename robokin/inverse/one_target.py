@@ -58,6 +58,10 @@ Told = tuple[int, float, list[float], float, float]
 Proven = tuple[int, list[Told]]
 """How many candidates there were; those that are solutions."""
 
+KernelSolution = tuple[Array, Array, int, int, float]
+"""The table of an answer, its target, how many candidates there were, how many are within the limits, and how many
+configurations those are equivalent to: see `OneAnswer`."""
+
 
 def plain_pose(T: Any) -> bool:
     """Whether something is a pose (4, 4) [m] as the blocks take it: an array that is rigid to the last digits."""
@@ -88,8 +92,7 @@ def solve_one(
         known = native.solution(arm.kernel, T, limits, near, arm.elimination)
         if known is None:
             return None
-        table, copy, tried, inside, turns = known
-        return OneAnswer(arm, copy, tried, table, limits, most, near, inside, int(turns))
+        return kernel_answer(arm, known, limits, most, near)
     closing = _closing(arm.loop, T)[None]
     target = T[:3].T.ravel().tolist()
     proven = _by_closed_form(arm, closing, target) if arm.form is not None else _by_elimination(arm, closing, target)
@@ -110,6 +113,14 @@ def solve_one(
         return None
     table = np.array([(*q, *rest) for q, *rest in zip(every, position, angle, inside, strict=True)])
     return OneAnswer(arm, np.array(T), tried, table, limits, most, near, sum(inside), None)
+
+
+def kernel_answer(
+    arm: OneTargetArm, known: KernelSolution, limits: bool, most: int | None, near: Array | None
+) -> OneAnswer:
+    """The answer that the native kernel's `solution` is, for the limits and the wish that it was asked with."""
+    table, T, tried, inside, turns = known
+    return OneAnswer(arm, T, tried, table, limits, most, near, inside, int(turns))
 
 
 def _closing(loop: Loop, T: Array) -> Array:

@@ -20,8 +20,8 @@ from robokin.inverse.full_turns import check_turns, with_full_turns, with_turn_c
 from robokin.inverse.hold import HeldArm, check_held_limits, held_arm, own_near, whole_answer, with_held_joints
 from robokin.inverse.later_fields import changed
 from robokin.inverse.one_answer import OneAnswer
-from robokin.inverse.one_target import plain_pose, solve_one
-from robokin.inverse.one_target_arm import one_target_arm
+from robokin.inverse.one_target import KernelSolution, kernel_answer, plain_pose, solve_one
+from robokin.inverse.one_target_arm import OneTargetArm, one_target_arm
 from robokin.inverse.solutions import BatchResult, Question, Result
 from robokin.inverse.swivel_block import SwivelSolution, one_swivel_arm, solve_swivel
 from robokin.inverse.target_block import Method, Request
@@ -106,7 +106,11 @@ def _one_target(
     if near is None and hold is None:
         # The kernel looks at the pose itself.
         arm = one_target_arm(robot)
-        if arm is not None and (arm.kernel is not None or plain_pose(T)):
+        if native is not None and arm is not None and arm.kernel is not None:
+            told = native.solution(arm.kernel, T, limits, None, arm.elimination)
+            # What the answer is made of is put together when it is looked at.
+            return None if told is None else UnmadeResult(partial(_told, robot, arm, told, limits, most, method, seed))
+        if arm is not None and plain_pose(T):
             answer = solve_one(arm, T, limits, most)
             return None if answer is None else UnmadeResult(partial(_made, robot, None, answer, {}, method, seed))
         swivel = one_swivel_arm(robot) if arm is None and limits else None
@@ -128,6 +132,13 @@ def _one_target(
     if answer is None:
         return None
     return UnmadeResult(partial(_made, robot, part, answer, dict(hold or {}), method, seed, near))
+
+
+def _told(
+    robot: Robot, arm: OneTargetArm, told: KernelSolution, limits: bool, most: int | None, method: Method, seed: int
+) -> dict[str, Any]:
+    """The fields of the native kernel's answer, when it is looked at."""
+    return _made(robot, None, kernel_answer(arm, told, limits, most, None), {}, method, seed)
 
 
 def _made(

@@ -249,3 +249,59 @@ def test_several_threads_may_look_at_results_at_once(rng):
     for thread in threads:
         thread.join()
     assert not wrong
+
+
+@pytest.mark.parametrize("name, hold", [("puma560", None), ("crx10ia", None), ("iiwa14", {2: 0.3}), ("iiwa14", None)])
+def test_a_result_knows_its_question_however_it_is_come_by(name, hold, rng):
+    robot = robokin.load(name)
+    q = rng.uniform(-1.0, 1.0, robot.n)
+    q[2] = 0.3
+    T = robokin.forward_kinematics(robot, q)
+    names = {part.name for part in dataclasses.fields(solutions.Result)}
+
+    def result():
+        return robokin.solve_ik(robot, T, hold=hold)
+
+    def looked_at():
+        one = result()
+        assert len(one) and one.question is one.question
+        return one
+
+    for make in (result, looked_at):
+        for other in (
+            make(),
+            copy.copy(make()),
+            copy.deepcopy(make()),
+            pickle.loads(pickle.dumps(make())),
+            dataclasses.replace(make()),
+        ):
+            asked = other.question
+            assert type(other) is solutions.Result
+            assert (asked.task, asked.limits, asked.hold) == ("pose", True, hold or {})
+            assert np.array_equal(asked.T, T) and asked.robot.id == robot.id
+            assert all(hasattr(other, field) for field in names)
+            assert repr(other) == repr(result())
+            with pytest.raises(dataclasses.FrozenInstanceError):
+                other.question = None
+    one = result()
+    T[0, 3] += 1.0  # the question holds a copy
+    assert not np.array_equal(one.question.T, T)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        result().complete = False
+    with pytest.raises(AttributeError, match="object has no attribute 'other'"):
+        _ = result().other
+
+
+def test_fields_are_asked_for_in_any_order(rng):
+    robot = robokin.load("puma560")
+    poses = robokin.forward_kinematics(robot, rng.uniform(-2.0, 2.0, (6, 6)))
+    poses[:2, :3, 3] *= 9.0  # out of reach
+    names = [part.name for part in dataclasses.fields(solutions.Result)]
+    for T in poses:
+        expected = {name: repr(getattr(robokin.solve_ik(robot, T), name)) for name in names}
+        for _ in range(4):
+            result = robokin.solve_ik(robot, T)
+            for name in rng.permutation(names).tolist():
+                assert repr(getattr(result, name)) == expected[name]
+            assert {*names} <= {*vars(result)}
+            assert not {"_tell", "_question"} & {*vars(result)}
