@@ -5,26 +5,27 @@ of targets, and for one the interpreter's share is all.
 Derivation. Candidates by straight-line code (`straight_forms`), or by elimination where an arm has no closed form, each
 proven by straight-line forward kinematics (`straight_line`); angles, order, limits and counts by the rules of `verify`,
 `window` and `target_block`, number by number.
-Degenerate case. Whatever is not plain is left to the blocks (None): a candidate that wants a polish, two solutions near
-to each other, an odd number of them or none, one a trifle outside the limits, a pose that is not rigid to the last
-digits.
+Degenerate case. Whatever is not plain is left to the blocks (None): a candidate that wants a polish, equal solutions,
+an odd number of them or none, one right beside the limits, a singular one where two are near to each other or one is a
+trifle outside the limits, a pose that is not rigid to the last digits.
 """
 
 from __future__ import annotations
 
 import math
-from functools import partial
-from itertools import pairwise
+from itertools import combinations, pairwise
 from operator import itemgetter
 from typing import Any
 
 import numpy as np
 
 from robokin.arrays import Array
+from robokin.inverse.elimination.complex_newton import SURE
 from robokin.inverse.elimination.loop import Loop
 from robokin.inverse.elimination.one_elimination import all_solutions
 from robokin.inverse.one_answer import OneAnswer
 from robokin.inverse.one_target_arm import OneTargetArm
+from robokin.inverse.self_motion.onto_limits import BESIDE
 from robokin.inverse.self_motion.root_neighbours import NEIGHBOURS
 from robokin.inverse.verify import (
     CLOSE,
@@ -33,13 +34,15 @@ from robokin.inverse.verify import (
     HALF_TURN,
     KEY_CELLS,
     OFF_CENTRE,
+    SAME,
 )  # fmt: skip
+from robokin.inverse.window import SINGULAR, TOLD_APART, nearly_singular
 from robokin.kernel.native_kernel import native
 from robokin.spatial.angles import TURN
 from robokin.spatial.rigid_poses import CLEAN, LAST_ROW
 from robokin.spatial.transforms import FARTHEST
 
-BOTTOM = (0.0, 0.0, 0.0, 1.0)
+BOTTOM = [0.0, 0.0, 0.0, 1.0]
 
 FIRST_CELLS, CELLS = (int(cells) for cells in KEY_CELLS[:2])
 HALF_FIRST, HALF = 0.5 * (FIRST_CELLS - 1), 0.5 * (CELLS - 1)
@@ -49,7 +52,9 @@ FIRST_EDGE, EDGE = HALF_FIRST + OFF_CENTRE, HALF + OFF_CENTRE
 W1, W2, W3, W4, W5, W6 = (1.0 + math.modf(k * 0.6180339887498949)[0] for k in range(1, 7))
 """Weights of |q| by which equal configurations are found."""
 
-LEAST = HALF_TURN - math.pi
+PI = math.pi
+
+LEAST = HALF_TURN - PI
 """Angles below this count as 180°."""
 
 Told = tuple[int, float, list[float], float, float]
@@ -78,7 +83,7 @@ def plain_pose(T: Any) -> bool:
     determinant = (d * h - g * e) * c + (g * b - a * h) * f + (a * e - d * b) * i
     # What is no number is not within any bounds.
     near = -FARTHEST <= x <= FARTHEST and -FARTHEST <= y <= FARTHEST and -FARTHEST <= z <= FARTHEST
-    last = all(abs(entry - wish) <= LAST_ROW for entry, wish in zip(bottom, BOTTOM, strict=True))
+    last = bottom == BOTTOM or all(abs(entry - wish) <= LAST_ROW for entry, wish in zip(bottom, BOTTOM, strict=True))
     return bool(error <= CLEAN and determinant > 0.0 and near and last)
 
 
@@ -99,19 +104,29 @@ def solve_one(
     if proven is None or not proven[1] or len(proven[1]) % 2:
         return None
     tried, found = proven
-    sums = sorted([total for _, total, _, _, _ in found])
-    if any(after - before < CLOSE for before, after in pairwise(sums)):
-        return None  # two may be equal, or about to meet
     found.sort(key=itemgetter(0))
     if any(one[0] == other[0] for one, other in pairwise(found)):
+        return None
+    sums = sorted([total for _, total, _, _, _ in found])
+    # Two may be equal, or about to meet.
+    doubt = any(after - before < CLOSE for before, after in pairwise(sums))
+    if doubt and any(_same(one[2], other[2]) for one, other in combinations(found, 2)):
         return None
     every = [q for _, _, q, _, _ in found]
     position, angle = [one[3] for one in found], [one[4] for one in found]
     wish = None if near is None else near.tolist()
     inside = [_into_limits(arm, q, wish) for q in every]
-    if limits and not all(map(partial(_well_placed, arm), inside, every)):
+    if limits and not all(inside):
+        for q in [q for q, fits in zip(every, inside, strict=True) if not fits]:
+            if not _outside(arm, q, 2.0 * NEIGHBOURS):
+                # It may stand for one inside: of an arm that is not singular there only where it is beside the limit.
+                if not _outside(arm, q, 2.0 * BESIDE):
+                    return None
+                doubt = True
+    if doubt and _singular(arm, every, position, angle):
         return None
-    table = np.array([(*q, *rest) for q, *rest in zip(every, position, angle, inside, strict=True)])
+    flat = [number for q, *rest in zip(every, position, angle, inside, strict=True) for number in (*q, *rest)]
+    table = np.array(flat, dtype=np.float64).reshape(-1, 9)
     return OneAnswer(arm, np.array(T), tried, table, limits, most, near, sum(inside), None)
 
 
@@ -163,15 +178,12 @@ def _by_elimination(arm: OneTargetArm, closing: Array, target: list[float]) -> P
 
 def _told(values: list[float], position: float, angle: float) -> Told:
     """A configuration with its angles in (-π, π] as `verify.distinct` has them, its key and its weighted sum."""
-    if min(values) >= LEAST and max(values) <= math.pi:
-        q = [value + 0.0 for value in values]  # of -0 that is 0
-    else:
-        q = [_wrapped(value) for value in values]
+    q = [value + 0.0 if LEAST <= value <= PI else _wrapped(value) for value in values]  # of -0 that is 0
     a, b, c, d, e, f = q
-    key = round(a / math.pi * HALF_FIRST + FIRST_EDGE) * CELLS
-    key = (((key + round(b / math.pi * HALF + EDGE)) * CELLS) + round(c / math.pi * HALF + EDGE)) * CELLS
+    key = round(a / PI * HALF_FIRST + FIRST_EDGE) * CELLS
+    key = (((key + round(b / PI * HALF + EDGE)) * CELLS) + round(c / PI * HALF + EDGE)) * CELLS
     total = W1 * abs(a) + W2 * abs(b) + W3 * abs(c) + W4 * abs(d) + W5 * abs(e) + W6 * abs(f)
-    return key + round(d / math.pi * HALF + EDGE), total / math.pi, q, position, angle
+    return key + round(d / PI * HALF + EDGE), total / PI, q, position, angle
 
 
 def _wrapped(value: float) -> float:
@@ -185,30 +197,44 @@ def _into_limits(arm: OneTargetArm, q: list[float], wish: list[float] | None) ->
     inside = True
     if wish is not None:
         q[:] = [value + TURN * round((near - value) / TURN) for value, near in zip(q, wish, strict=True)]
-    for bounds in arm.bounds:
-        value = q[bounds.joint]
-        fits = bounds.low <= value <= bounds.high
-        if not fits and (bounds.beyond or wish is not None):
-            least = np.ceil((bounds.low - value) / TURN)
-            most = np.floor((bounds.high - value) / TURN)
+    for joint, low, high, beyond in arm.bounds:
+        value = q[joint]
+        if low <= value <= high:
+            continue
+        fits = False
+        if beyond or wish is not None:
+            least, most = np.ceil((low - value) / TURN), np.floor((high - value) / TURN)
             if least <= most:
                 value += TURN * min(max(0.0, least), most)
-                fits = bounds.low <= value <= bounds.high
-                q[bounds.joint] = float(value)
+                fits = low <= value <= high
+                q[joint] = float(value)
         inside = inside and fits
     return inside
 
 
-def _well_placed(arm: OneTargetArm, inside: bool, q: list[float]) -> bool:
-    """Whether q is within the limits, or some angle farther outside than what may stand for a solution inside."""
-    if inside:
-        return True
-    for bounds in arm.bounds:
-        value = q[bounds.joint]
-        if not bounds.low <= value <= bounds.high:
-            away = min(
-                abs(math.remainder(value - end, TURN)) for end in (bounds.low, bounds.high) if abs(end) < math.inf
-            )
-            if away > 2.0 * NEIGHBOURS:
-                return True
+def _outside(arm: OneTargetArm, q: list[float], least: float) -> bool:
+    """Whether some angle of q is farther outside its limits than `least` [rad], full turns not counted."""
+    for joint, low, high, _ in arm.bounds:
+        value = q[joint]
+        # An end that is infinite is none to be near to.
+        if not low <= value <= high and not (
+            (abs(low) < math.inf and abs(math.remainder(value - low, TURN)) <= least)
+            or (abs(high) < math.inf and abs(math.remainder(value - high, TURN)) <= least)
+        ):
+            return True
     return False
+
+
+def _same(one: list[float], other: list[float]) -> bool:
+    """Whether two configurations may be one."""
+    return all(abs(math.remainder(a - b, TURN)) <= 10.0 * SAME for a, b in zip(one, other, strict=True))
+
+
+def _singular(arm: OneTargetArm, every: list[list[float]], position: list[float], angle: list[float]) -> bool:
+    """Whether the arm may be singular at one of some solutions, as the blocks have it."""
+    analysis = arm.analysis
+    assert analysis.six is not None
+    off = np.maximum(np.array(position) / arm.size, angle)
+    least = TOLD_APART if arm.form is not None and len(every) == analysis.number else SINGULAR
+    below = np.maximum(least, np.sqrt(off / SURE))
+    return bool(nearly_singular(analysis.six.chain, np.array(every), arm.size, below).any())

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,8 +34,7 @@ NO_TAPE = FormTape(np.empty((0, 11)), np.empty(0), np.zeros((1, 6, 2)), 0, 0)
 """What stands for a closed form where there is none, and the native kernel is told the limits alone."""
 
 
-@dataclass(frozen=True, eq=False)
-class Bounds:
+class Bounds(NamedTuple):
     """A joint's limits as they count: low, high [rad], and whether a full turn may bring an angle into them."""
 
     joint: int

@@ -112,6 +112,7 @@ def straight_residuals(program: ChainProgram) -> StraightResiduals | None:
         for one in part[1:]:
             total = total + one * one
         sums.append(total.name)
+    lines, sums = folded(lines, sums)
     values = ", ".join(f"q{i}" for i in range(program.n))
     body = ["def straight(rows, target):", f"    {', '.join(target.name for target in targets)} = target"]
     body += ["    halves, off, k = [], [], 0", f"    for {values}, in rows:", *needed(before, halves)]
