@@ -79,6 +79,20 @@ def test_the_blocks_say_the_same(rng):
     assert answered > 0.6 * asked
 
 
+@pytest.mark.parametrize("name", ["puma560", "ur5e"])
+def test_a_solution_near_a_limit_needs_no_blocks_where_the_arm_is_regular(name, rng):
+    robot = robokin.load(name)
+    arm, answered = one_target_arm(robot), 0
+    for k, q in enumerate(rng.uniform(*np.clip(robot.limits, -3.0, 3.0).T, (12, 6))):
+        joint = k % 6
+        q[joint] = robot.limits[joint, k % 2] + (-1.0) ** k * 10.0 ** rng.uniform(-3.5, -2.5)
+        T = robokin.forward_kinematics(robot, q)
+        if plain_pose(T) and solve_one(arm, T, True, None) is not None:
+            answered += 1
+            assert_same(robokin.solve_ik(robot, T), solve_many(robot, T[None])[0])
+    assert answered >= 8
+
+
 def in_blocks(monkeypatch, *question, **options):
     """The answer that the blocks give to a question."""
     with monkeypatch.context() as change:
