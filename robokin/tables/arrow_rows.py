@@ -212,7 +212,7 @@ class ArrowReader:
             row = int(np.argmax(column.is_null().to_numpy(zero_copy_only=False)))
             raise self.error(int(self.row_lines[row]), f"found nothing in the column '{heading}', expected a number")
         with np.errstate(over="ignore"):
-            values = _plain(column).cast("float64", safe=False).to_numpy(zero_copy_only=False)
+            values = _doubles(column).to_numpy(zero_copy_only=False)
         finite = np.isfinite(values)
         if not finite.all():
             row = int(np.argmin(finite))
@@ -261,6 +261,14 @@ def kind_of_cells(of: Any) -> str:
 def _plain(column: Any) -> Any:
     """A column without a dictionary."""
     return column.dictionary_decode() if pyarrow("pyarrow.types").is_dictionary(column.type) else column
+
+
+def _doubles(column: Any) -> Any:
+    """A column of numbers as the doubles that are nearest, which Arrow's own cast of decimal numbers is not."""
+    column = _plain(column)
+    if pyarrow("pyarrow.types").is_decimal(column.type):
+        column = column.cast("string")
+    return column.cast("float64", safe=False)
 
 
 def cells_of(column: Any) -> list[Any]:

@@ -8,9 +8,11 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import io
+import json
 import os
+import zlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import IO, Any
 
@@ -45,11 +47,22 @@ class WrittenPart:
         return f"part-{self.number:08d}.parquet"
 
 
+def record_of(part: WrittenPart) -> dict[str, Any]:
+    """What a manifest or a journal says of a part, with the check sum of this."""
+    return asdict(part) | {"check": _check_sum(part)}
+
+
+def _check_sum(part: WrittenPart) -> int:
+    return zlib.crc32(json.dumps(asdict(part)).encode())
+
+
 def part_of(record: Any) -> WrittenPart | None:
-    """The part that a record of a manifest or of a journal means; None for what is none."""
+    """The part that a record of a manifest or of a journal means; None for what is none, and for one that is damaged."""
     try:
-        part = WrittenPart(**{key: value for key, value in record.items() if key != "file"})
-    except (AttributeError, TypeError):
+        part = WrittenPart(**{key: value for key, value in record.items() if key not in ("file", "check")})
+        if record.get("check") != _check_sum(part):
+            return None
+    except (AttributeError, TypeError, RecursionError):
         return None
     whole = (part.number, part.rows, part.bytes, part.questions)
     texts = isinstance(part.sha256, str) and isinstance(part.asked, str)

@@ -12,13 +12,12 @@ import json
 import os
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict
 from pathlib import Path
 from typing import IO, Any
 
 from robokin.errors import InputError, OutputError, counted, shown
 from robokin.files import open_path, read_up_to
-from robokin.tables.part_files import WORD, PartPlace, WrittenPart, part_of
+from robokin.tables.part_files import WORD, PartPlace, WrittenPart, part_of, record_of
 from robokin.unfinished_work import in_order
 
 MANIFEST, JOURNAL, LOCK = "_manifest.json", "_done.jsonl", "_lock"
@@ -158,7 +157,7 @@ class PartFolder:
 
     def finish(self, parts: Iterable[WrittenPart]) -> None:
         """All parts are there: say so in the manifest, whose bytes hang on nothing but the question and its answer."""
-        listed = [{"file": part.file} | asdict(part) for part in sorted(parts, key=lambda part: part.number)]
+        listed = [{"file": part.file} | record_of(part) for part in sorted(parts, key=lambda part: part.number)]
         rows = sum(part["rows"] for part in listed)
         self._manifest({"complete": True, "rows": rows, "parts": listed})
         if self.journal is not None:
@@ -181,7 +180,7 @@ class PartFolder:
 
 
 def _line(part: WrittenPart) -> bytes:
-    return json.dumps(asdict(part)).encode() + b"\n"
+    return json.dumps(record_of(part)).encode() + b"\n"
 
 
 def read_manifest(folder: str) -> dict[str, Any]:
@@ -203,14 +202,19 @@ def whole_parts(folder: str) -> list[str]:
     """The files of a folder of Parquet files, in the order of their rows.
 
     Of a folder that robokin wrote the parts of its manifest. Raises InputError where a run is not done, where a part is
-    missing or was changed in length, and for a folder without such files.
+    missing or was changed in length or in its record, and for a folder without such files.
     """
     path = Path(folder)
     if (path / MANIFEST).is_file():
         found = read_manifest(folder)
         if not found.get("complete"):
             raise InputError(f"{folder}: found the parts of a run that is not done, expected --resume to finish it")
-        parts = [part for part in map(part_of, found["parts"]) if part is not None]
+        parts = [part for part in map(part_of, found.get("parts", [])) if part is not None]
+        numbers, rows = [part.number for part in parts], sum(part.rows for part in parts)
+        if numbers != [*range(len(found.get("parts", [])))] or rows != found.get("rows"):
+            raise InputError(
+                f"{path / MANIFEST}: it was changed, expected one as robokin wrote it; --resume makes it anew"
+            )
         for part in parts:
             file = path / part.file
             if not file.is_file() or file.stat().st_size != part.bytes:

@@ -190,6 +190,33 @@ def test_parts_that_are_gone_cut_or_changed_are_made_anew(call, tmp_path, refere
     assert files_of(folder) == reference
 
 
+def test_a_manifest_that_was_changed_is_said_and_made_anew(call, tmp_path, reference):
+    """A record that is damaged would leave its rows out without a word."""
+    folder = restored(tmp_path / "run", reference)
+    whole = json.loads(reference["_manifest.json"])
+
+    def changed(change):
+        manifest = json.loads(json.dumps(whole))
+        change(manifest)
+        (folder / "_manifest.json").write_text(json.dumps(manifest))
+
+    for change in (
+        lambda found: found["parts"][3].update(rows=7),
+        lambda found: found["parts"][3].update(sha256="0"),
+        lambda found: found["parts"].pop(),
+        lambda found: found["parts"].pop(0),
+        lambda found: found["parts"].reverse(),
+        lambda found: found["parts"].append(found["parts"][3]),
+        lambda found: found["parts"].append(None),
+        lambda found: found.pop("parts"),
+        lambda found: found.update(rows=1),
+    ):
+        changed(change)
+        refused(call("fk", "puma560", "-i", folder), "_manifest.json: it was changed, expected", "--resume")
+    assert call(*SAMPLES, "-o", folder, "--resume").status == 0
+    assert files_of(folder) == reference
+
+
 def test_a_torn_journal_costs_its_last_part(call, tmp_path, reference):
     folder = restored(tmp_path / "run", reference)
     manifest = json.loads(reference["_manifest.json"])

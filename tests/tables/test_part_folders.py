@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from robokin.errors import InputError, OutputError
-from robokin.tables.part_files import PartPlace, WrittenPart, part_of
+from robokin.tables.part_files import PartPlace, WrittenPart, part_of, record_of
 from robokin.tables.part_folders import PartFolder, read_manifest, whole_parts
 
 QUESTION = {"command": "test", "tolerances": (None, 0.1)}
@@ -88,6 +88,20 @@ def test_the_word_of_a_run_ends_with_it(tmp_path):
 )
 def test_what_is_no_record_is_none(record):
     assert part_of(record) is None
+
+
+@pytest.mark.parametrize(
+    "key, value",
+    [("rows", 3), ("number", 1), ("bytes", 6), ("questions", 0), ("asked", "b"), ("found", {}), ("check", 0),
+     ("check", None)],
+)  # fmt: skip
+def test_a_record_that_is_damaged_is_none(key, value):
+    """A part whose bytes are right is no help where what is said of it is wrong."""
+    part = WrittenPart(0, 2, 5, "0", 7, "a", [1, {"2": None}])
+    record = json.loads(json.dumps({"file": part.file} | record_of(part)))
+    assert part_of(record) == part
+    assert part_of(record | {key: value}) is None
+    assert part_of({name: one for name, one in record.items() if name != key}) is None
 
 
 def test_a_place_that_cannot_be_written(tmp_path):
