@@ -57,10 +57,10 @@ def _check_sum(part: WrittenPart) -> int:
 
 
 def part_of(record: Any) -> WrittenPart | None:
-    """The part that a record of a manifest or of a journal means; None for what is none, and for one that is damaged."""
+    """The part that a record of a manifest or of a journal means; None for what is none or is damaged."""
     try:
         part = WrittenPart(**{key: value for key, value in record.items() if key not in ("file", "check")})
-        if record.get("check") != _check_sum(part):
+        if "check" in record and record["check"] != _check_sum(part):  # those of older folders have none
             return None
     except (AttributeError, TypeError, RecursionError):
         return None

@@ -332,9 +332,10 @@ def test_arrays_that_do_not_fit_are_refused(rng):
     arm = handle(chain_of(entry("panda")))
     one = np.ones
 
-    def advanced(chain, m, s, state=27):
+    def advanced(chain, m, s, state=27, most=1.0, steps=1.0):
         wide = one((m, 7)), one((m, 7))
-        return native.advanced(chain, one((m, 4, 4)), one(m), *wide, one((m, state)), one(s), one(s), 1.0, 8.0)
+        left = np.full(s, steps)
+        return native.advanced(chain, one((m, 4, 4)), np.full(m, most), *wide, one((m, state)), one(s), left, 1.0, 8.0)
 
     for wrong in (
         lambda: native.refined(loop, one((2, 4, 4)), one((3, 6)), 3),
@@ -353,7 +354,18 @@ def test_arrays_that_do_not_fit_are_refused(rng):
         lambda: native.followed_rows(arm, one((3, 4, 4)), one((1, 6)), one((1, 7)), one((4, 7)), 1.0, 0, True, False),
         lambda: native.followed_rows(arm, one((3, 4, 4)), one((1, 7)), one((1, 7)), one((2, 7)), 1.0, 0, True, False),
         lambda: native.followed_rows(arm, one((3, 4, 4)), one((1, 7)), one((1, 7)), one((4, 7)), 1.0, 8, True, False),
+        lambda: native.refined(loop, one((3, 4, 4)), one((3, 6)), 10**9),
+        lambda: native.refined(loop, one((3, 4, 4)), one((3, 6)), 99_999),
+        lambda: native.complex_refined(loop, one((3, 32)), one((3, 12)), 99_999, 0.5),
+        lambda: native.descended(arm, one((3, 4, 4)), one(3), one((3, 7)), 1.0, one(7), one(7), 99_999),
+        lambda: native.corrected(arm, one((3, 4, 4)), one((3, 1, 7)), 1, 1e4 * one(3), one((3, 7)), 1.0, 0.0, 0.0),
         lambda: native.candidates(arm, one((3, 4, 4))),
+        lambda: advanced(arm, 4, 2, most=np.inf),
+        lambda: advanced(arm, 4, 2, most=np.nan),
+        lambda: advanced(arm, 4, 2, most=1e4),
+        lambda: advanced(arm, 4, 2, most=-1.0),
+        lambda: advanced(arm, 4, 2, steps=np.nan),
+        lambda: advanced(arm, 4, 2, steps=99_999.0),
         lambda: advanced(arm, 3, 1),
         lambda: advanced(arm, 2, 2),
         lambda: advanced(arm, 4, 2, state=26),

@@ -101,7 +101,8 @@ def test_a_record_that_is_damaged_is_none(key, value):
     record = json.loads(json.dumps({"file": part.file} | record_of(part)))
     assert part_of(record) == part
     assert part_of(record | {key: value}) is None
-    assert part_of({name: one for name, one in record.items() if name != key}) is None
+    less = part_of({name: one for name, one in record.items() if name != key})
+    assert less == (part if key == "check" else None)  # older folders have no check sums
 
 
 def test_a_place_that_cannot_be_written(tmp_path):

@@ -9,20 +9,6 @@
 #define MOST_STEPS_ASKED 1000
 #define MOST_CORRECTION_STEPS 100
 
-/* A C-contiguous array of m rows of `width` numbers, or of any number of rows where m is negative. */
-static const double *table(PyObject *object, npy_intp width, npy_intp *m, PyObject **copy) {
-    PyArrayObject *array = doubles(object, 1, copy);
-    if (!array)
-        return NULL;
-    npy_intp size = PyArray_SIZE(array), count = PyArray_DIM(array, 0);
-    if ((*m >= 0 && count != *m) || size != count * width) {
-        PyErr_SetString(PyExc_ValueError, "arrays of a descent do not fit each other");
-        return NULL;
-    }
-    *m = count;
-    return PyArray_DATA(array);
-}
-
 /* A chain that is a loop of six joints. */
 static const Chain *loop(PyObject *capsule) {
     const Chain *known = PyCapsule_GetPointer(capsule, CHAIN);

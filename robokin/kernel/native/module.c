@@ -52,7 +52,8 @@ PyArrayObject *doubles(PyObject *object, int least, PyObject **copy) {
     }
     PyArrayObject *array = (PyArrayObject *)object;
     if (PyArray_NDIM(array) < least) {
-        PyErr_SetString(PyExc_ValueError, "expected an array of more dimensions");
+        PyErr_Format(PyExc_ValueError, "expected an array of at least %d dimensions, found one of %d", least,
+                     PyArray_NDIM(array));
         return NULL;
     }
     if (PyArray_TYPE(array) == NPY_DOUBLE && PyArray_IS_C_CONTIGUOUS(array) && PyArray_ISALIGNED(array) &&
@@ -60,6 +61,20 @@ PyArrayObject *doubles(PyObject *object, int least, PyObject **copy) {
         return array;
     *copy = PyArray_FROM_OTF(object, NPY_DOUBLE, NPY_ARRAY_IN_ARRAY | NPY_ARRAY_ENSUREARRAY);
     return (PyArrayObject *)*copy;
+}
+
+const double *table(PyObject *object, npy_intp width, npy_intp *m, PyObject **copy) {
+    PyArrayObject *array = doubles(object, 1, copy);
+    if (!array)
+        return NULL;
+    npy_intp size = PyArray_SIZE(array), count = PyArray_DIM(array, 0);
+    if ((*m >= 0 && count != *m) || size != count * width) {
+        PyErr_Format(PyExc_ValueError, "arrays do not fit each other: found %zd numbers in %zd rows, expected %zd a row%s",
+                     (Py_ssize_t)size, (Py_ssize_t)count, (Py_ssize_t)width, *m < 0 ? "" : " and as many rows as before");
+        return NULL;
+    }
+    *m = count;
+    return PyArray_DATA(array);
 }
 
 /* The handle of a chain: of n + 1 constants m, 4 rows of 4 each, of whether its joints turn, and of their offsets. */
@@ -148,12 +163,7 @@ PyObject *empty(PyArrayObject *q, int more, const npy_intp *shape) {
     return PyArray_EMPTY(before + more, dims, NPY_DOUBLE, 0);
 }
 
-npy_intp rows(PyArrayObject *q) {
-    npy_intp m = 1;
-    for (int i = 0; i < PyArray_NDIM(q) - 1; i++)
-        m *= PyArray_DIM(q, i);
-    return m;
-}
+npy_intp rows(PyArrayObject *q) { return PyArray_SIZE(q) / PyArray_DIM(q, PyArray_NDIM(q) - 1); }
 
 /* The array that a caller gives for the answer, or a new one, of q's leading shape and `more` dimensions. */
 static PyObject *answer(PyObject *given, PyArrayObject *q, int more, const npy_intp *shape) {

@@ -70,6 +70,9 @@ extern Lanes lanes;
 /* A C-contiguous array of doubles (borrowed, or a new copy in *copy) with at least `least` dimensions. */
 PyArrayObject *doubles(PyObject *object, int least, PyObject **copy);
 
+/* An array of m rows of `width` numbers each, or of any number of rows where m is negative, which is found out. */
+const double *table(PyObject *object, npy_intp width, npy_intp *m, PyObject **copy);
+
 /* The chain and the joint values (..., n) of a call. */
 const Chain *asked(PyObject *capsule, PyObject *object, PyArrayObject **q, PyObject **copy);
 

@@ -44,20 +44,6 @@ static PyObject *new_numbers(npy_intp m, npy_intp width) {
 
 static PyObject *new_places(npy_intp m) { return PyArray_EMPTY(1, &m, NPY_INTP, 0); }
 
-/* An array of m rows of `width` numbers each, or of any number of rows where m is negative. */
-static const double *numbers(PyObject *object, npy_intp width, npy_intp *m, PyObject **copy) {
-    PyArrayObject *array = doubles(object, 1, copy);
-    if (!array)
-        return NULL;
-    npy_intp count = PyArray_DIM(array, 0);
-    if ((*m >= 0 && count != *m) || PyArray_SIZE(array) != count * width) {
-        PyErr_SetString(PyExc_ValueError, "arrays of solutions do not fit each other");
-        return NULL;
-    }
-    *m = count;
-    return PyArray_DATA(array);
-}
-
 /* The targets (m,) of rows: whole numbers that can be counted. */
 static const npy_intp *targets_of(PyObject *object, npy_intp *m, PyObject **copy) {
     *copy = PyArray_Check(object) ? PyArray_FROM_OTF(object, NPY_INTP, NPY_ARRAY_IN_ARRAY) : NULL;
@@ -87,11 +73,11 @@ static PyObject *each_once(PyObject *self, PyObject *const *args, Py_ssize_t cou
     }
     long compared = PyLong_AsLong(args[5]);
     npy_intp six = 6, three = 3, s = -1;
-    const double *turning = PyErr_Occurred() ? NULL : numbers(args[0], 1, &six, &copies[0]);
-    const double *weights = turning ? numbers(args[1], 6, &three, &copies[1]) : NULL;
+    const double *turning = PyErr_Occurred() ? NULL : table(args[0], 1, &six, &copies[0]);
+    const double *weights = turning ? table(args[1], 6, &three, &copies[1]) : NULL;
     const npy_intp *index = weights ? targets_of(args[2], &s, &copies[2]) : NULL;
-    const double *values = index ? numbers(args[3], 12, &s, &copies[3]) : NULL;
-    const double *apart = values ? numbers(args[4], 1, &s, &copies[4]) : NULL;
+    const double *values = index ? table(args[3], 12, &s, &copies[3]) : NULL;
+    const double *apart = values ? table(args[4], 1, &s, &copies[4]) : NULL;
     mask = apart ? PyArray_EMPTY(1, &s, NPY_BOOL, 0) : NULL;
     rows = mask ? malloc((size_t)(s + 1) * sizeof *rows) : NULL;
     if (!rows) {
@@ -207,11 +193,11 @@ static PyObject *arranged(PyObject *self, PyObject *const *args, Py_ssize_t coun
     npy_intp m = -1, four = 4, n = -1;
     all.size = PyFloat_AsDouble(args[4]);
     const npy_intp *index = PyErr_Occurred() ? NULL : targets_of(args[0], &m, &copies[0]);
-    all.turning = index ? numbers(args[3], 1, &n, &copies[1]) : NULL;
-    all.q = all.turning ? numbers(args[1], n, &m, &copies[2]) : NULL;
-    all.off = all.q ? numbers(args[2], 1, &m, &copies[3]) : NULL;
-    all.cells = all.off ? numbers(args[5], 1, &four, &copies[4]) : NULL;
-    all.weights = all.cells ? numbers(args[6], 1, &n, &copies[5]) : NULL;
+    all.turning = index ? table(args[3], 1, &n, &copies[1]) : NULL;
+    all.q = all.turning ? table(args[1], n, &m, &copies[2]) : NULL;
+    all.off = all.q ? table(args[2], 1, &m, &copies[3]) : NULL;
+    all.cells = all.off ? table(args[5], 1, &four, &copies[4]) : NULL;
+    all.weights = all.cells ? table(args[6], 1, &n, &copies[5]) : NULL;
     if (!all.weights)
         goto end;
     if (!PyTuple_Check(args[7])) {
@@ -310,8 +296,8 @@ static PyObject *regular(PyObject *self, PyObject *const *args, Py_ssize_t count
     const Chain *loop = PyCapsule_GetPointer(args[0], CHAIN);
     if (loop && loop->n != 6)
         PyErr_SetString(PyExc_ValueError, "expected a loop of six joints");
-    const double *values = loop && loop->n == 6 ? numbers(args[1], 12, &m, &copies[0]) : NULL;
-    const double *needed = values ? numbers(args[2], 1, &m, &copies[1]) : NULL;
+    const double *values = loop && loop->n == 6 ? table(args[1], 12, &m, &copies[0]) : NULL;
+    const double *needed = values ? table(args[2], 1, &m, &copies[1]) : NULL;
     answer = needed ? new_numbers(m, 0) : NULL;
     if (answer)
         lanes.regulars(loop, values, needed, m, of(answer));
