@@ -21,10 +21,24 @@
 #define FOLLOWED_OFF 0.1
 #define FOLLOWED_REGULAR 1e-3
 
-/* The damped step of least motion dx (n,) from an error e and a Jacobian J (6, n), and what the least singular value is
-   at least: of six squares that add up to `trace` five have at most the product (trace / 5)^5. */
-static double least_motion(int n, const double *J, const double e[6], double dx[MOST_MOVED]) {
-    double A[6][6], y[6], off = 0.0, trace = 0.0, product = 1.0, length = FOLLOWED_LONGEST;
+/* A bound of the least singular value from L D Lt, D on the diagonal of A and D Lt right of it: the trace of the inverse
+   adds up all inverse squares. */
+static double least_value(double A[6][6]) {
+    double inverse[6][6], trace = 0.0;
+    for (int i = 0; i < 6; i++)
+        for (int r = i; r < 6; r++) {
+            inverse[r][i] = r == i;
+            for (int k = i; k < r; k++)
+                inverse[r][i] -= A[k][r] / A[k][k] * inverse[k][i];
+            trace += inverse[r][i] * inverse[r][i] / A[r][r];
+        }
+    return trace > 0.0 ? 1.0 / sqrt(trace) : 0.0;
+}
+
+/* The damped step of least motion dx (n,) from an error e and a Jacobian J (6, n); what the least singular value is at
+   least where `regular` asks for it. */
+static void least_motion(int n, const double *J, const double e[6], double dx[MOST_MOVED], double *regular) {
+    double A[6][6], y[6], off = 0.0, length = FOLLOWED_LONGEST;
     for (int r = 0; r < 6; r++)
         off = fabs(e[r]) > off ? fabs(e[r]) : off;
     for (int r = 0; r < 6; r++) {
@@ -33,7 +47,6 @@ static double least_motion(int n, const double *J, const double e[6], double dx[
             for (int i = 0; i < n; i++)
                 A[r][c] += J[n * r + i] * J[n * c + i];
         }
-        trace += A[r][r];
         A[r][r] += FOLLOWED_DAMPING * (off * off + 1e-9);
         y[r] = e[r];
     }
@@ -44,8 +57,9 @@ static double least_motion(int n, const double *J, const double e[6], double dx[
                 A[r][c] -= f * A[k][c];
             y[r] -= f * y[k];
         }
-        product *= A[k][k];
     }
+    if (regular)
+        *regular = least_value(A);
     for (int k = 5; k >= 0; k--) {
         for (int c = k + 1; c < 6; c++)
             y[k] -= A[k][c] * y[c];
@@ -59,8 +73,6 @@ static double least_motion(int n, const double *J, const double e[6], double dx[
     }
     for (int i = 0; i < n; i++)
         dx[i] *= FOLLOWED_LONGEST / length;
-    trace /= 5.0;
-    return sqrt(product > 0.0 ? product : 0.0) / (trace * trace * sqrt(trace));
 }
 
 /* The error e of values x (n,) [rad | size] and the Jacobian; the greatest |e|, no number where there is none. */
@@ -73,20 +85,20 @@ static double error_at(const Chain *chain, const double *T, const double *x, dou
     return off;
 }
 
-/* Steps from x (n,) [rad | size] to the pose T; whether they close. `regular`: a bound of the least singular value. */
+/* Steps from x (n,) [rad | size] to the pose T; whether they close. `regular`: as `least_motion` has it. */
 static int stepped_to(const Chain *chain, const double *T, double *x, double size, double *regular) {
     double e[6], J[6 * MOST_MOVED], dx[MOST_MOVED], next[MOST_MOVED];
     int n = chain->n;
     double off = error_at(chain, T, x, size, e, J);
     for (int step = 0; step < FOLLOWED_STEPS && off > FOLLOWED_CLOSES; step++) {
-        least_motion(n, J, e, dx);
+        least_motion(n, J, e, dx, NULL);
         for (int i = 0; i < n; i++)
             x[i] += dx[i];
         off = error_at(chain, T, x, size, e, J);
     }
     if (!(off <= FOLLOWED_CLOSES))
         return 0;
-    *regular = least_motion(n, J, e, dx);
+    least_motion(n, J, e, dx, regular);
     if (off > FOLLOWED_SETTLED) {
         /* A last step, to rounding. */
         for (int i = 0; i < n; i++)
@@ -138,7 +150,7 @@ ptrdiff_t NAMED(followed_rows)(const Chain *chain, const double *T, ptrdiff_t m,
         for (int i = 0; i < n; i++)
             led[i] = here[i] + (i < own ? ahead[i] : 0.0);
         memcpy(next, led, sizeof next);
-        if (!stepped_to(chain, target, next, size, &regular))
+        if (!stepped_to(chain, target, next, size, listed ? &regular : NULL))
             return k;
         if (inside && !all_between(own, next, limits + 2 * n, limits + 3 * n)) {
             double far = 1.0, error[6];
