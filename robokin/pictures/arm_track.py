@@ -42,9 +42,11 @@ def track_of(path: Path, words: Sequence[str] = ()) -> ArmTrack:
     marked: list[Event | PathTurn] = [*path.events, *path.turns]
     told = [*words[: len(marked)], *(one.words for one in marked[len(words) :])]
     rows = [int(np.argmin(np.abs(path.s[kept] - one.fraction))) for one in marked]
+    # In the order in which they come, turns before what happens after them.
+    marks = sorted(zip(rows, told, marked, strict=True), key=lambda one: (one[0], not isinstance(one[2], PathTurn)))
     return ArmTrack(
         path.t[kept], path.q[kept], None if path.velocity is None else path.velocity[kept], path.T[kept, :3, 3],
-        timed, 1.0 if timed else PLAYED, tuple(zip(rows, told, strict=True)),
+        timed, 1.0 if timed else PLAYED, tuple((row, words) for row, words, _ in marks),
     )  # fmt: skip
 
 

@@ -255,9 +255,7 @@ def _branched() -> dict[str, Schema]:
     return {
         "hold": mapping(number("The joint's value [joint]."), "Joints that are held (--hold), by q and number."),
         "blends": items(blend, "The points between that the tool passes by (--blend, --blend-radius)."),
-        "choices": items(
-            text("A sentence."), "What might be meant otherwise: half a turn the other way, blends without a point."
-        ),
+        "choices": items(text("A sentence."), "What may be meant otherwise: half a turn, blends without a point."),
         "branch": text("The name of the posture that a line or an arc begins in."),
         "branch_at_end": text("The name of that which it ends in: another one after a singular configuration."),
         "reorientation": turn,
