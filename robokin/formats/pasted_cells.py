@@ -177,4 +177,6 @@ def pasted_cell(text: str, *, decimal_commas: bool = False) -> PastedCell:
         else text
     )
     text = re.sub(r"^([+\-]) (?=\S)", r"\1", text)
+    if whole := re.fullmatch(r"\(([^()]+)\)", text):
+        text = whole[1].strip()
     return PastedCell(text.strip(), tuple(dict.fromkeys(units)), starred)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from itertools import islice
 
-from robokin.errors import InputError
+from robokin.errors import InputError, shown
 from robokin.formats.pasted_headings import TABLE, heading_of
 from robokin.formats.pasted_row import PastedRow
 
@@ -17,16 +17,40 @@ VECTOR = re.compile(
 )
 MATRIX = re.compile(r"=\s*(?:[\w.]{1,40}\()?\s*[\[{]|^[ \t]*[\[{]\s{0,40}[\[{]", re.MULTILINE)
 GROUP = re.compile(r"[\[{]([^\[\]{}]{3,4000})[\]}]")
+TUPLE = re.compile(
+    r"(?m)^([ \t]{0,40}(?:\w{1,40} ?= ?)?\[?[ \t]{0,40})\(([^\n\[\]]{1,400})\)([ \t]{0,9},?[ \t]{0,9}\]?[ \t]{0,9})$"
+)
+"""A row of a list that is a tuple, on a line of its own."""
+
 COMMENT = re.compile(r"(?:%|#|//)(.*)")
 INDEXED = re.compile(r"(?<![\w.])(?:self\.)?([A-Za-z]\w{0,20})\[\s*(\d{1,2})\s*\]")
 CALLED_Q = ("q", "qs", "qsym", "th", "theta", "thetas", "t", "joints", "joint", "angles", "joint_angles", "symbols")
 """What a program calls the list of its joints' variables."""
 
+LISTED_Q = re.compile(r"(?:q|qs|th|thetas?|joints?)_(?:syms?|symbols|vec|list|values|vals|vars?|i)")
+"""The same with a word behind it."""
+
+OF_LINK = re.compile(r"(?<![\w.])(alpha|alp|a|d|theta|th|l)\((\d{1,2})\)", re.IGNORECASE)
+"""An entry of MATLAB's lists of lengths and angles."""
+
+UNPACKED = re.compile(
+    r"(?m)^[ \t]{0,40}(?:for (?:\w{1,20}, ?)?)?\(?(\w{1,20}(?: ?, ?\w{1,20}){3,5})\)? ?"
+    r"(?:= ?[\w.]{1,40}(?:\[[^\[\]\n]{1,20}\]){0,2}[ \t]{0,40}$|in )"
+)
+"""Where a program takes a row apart: `alpha, a, d, theta = table[i]`, `for theta, d, a, alpha in table`."""
+
+DICTIONARY = re.compile(r"\s*['\"]?\w{1,40}['\"]?\s*:(?!:)")
+ORIGIN = re.compile(r"\bOriginLink\s*\(|\bikpy\b")
+"""What only programs with ikpy have, whose links add their theta to the joint's variable (ikpy, link.py)."""
+
 RECORD = re.compile(r"\{|\b\w{1,30}\(")
 FIELD = re.compile(r"['\"]?(theta|d|a|alpha|offset|type)['\"]?\s*[=:]\s*(.*)", re.DOTALL)
+JOINED = re.compile(r"\s['\"]?(?:theta|d|a|alpha|offset|type)['\"]?\s?[=:](?!=)")
+"""Another number of a row in a value, where a comma is lost."""
+
 SYMBOL = re.compile(r"(?:\w{1,20}\.)?[sS]ymbols?\(\s*['\"]([^'\"]{1,40})['\"][^()]{0,60}\)")
 ENTRY = re.compile(r"(?<![\w.])['\"]?(?:self\.)?(alpha|al|a|d|q|theta|th)_?(\d{1,2})['\"]?\s*:\s*")
-LIMITED = re.compile(r"(?m)^\s*(?:self\.)?(\w{1,40}(?:\(\d{1,2}\)|\[\d{1,2}\])?)\.qlim\s*=\s*([^\n;]{1,200})")
+LIMITED = re.compile(r"(?m)^[ \t]*(?:self\.)?(\w{1,40}(?:\(\d{1,2}\)|\[\d{1,2}\])?)\.qlim\s*=\s*([^\n;]{1,200})")
 ASSIGNED_TO = re.compile(r"(?:self\.)?(\w{1,40}(?:\(\d{1,2}\)|\[\d{1,2}\])?)\s*=\s*[\w.]{0,40}$")
 CONTINUED = re.compile(r"\.\.\.[^\n]{0,400}\n")
 LINK_COLUMNS = ("theta", "d", "a", "alpha", "sigma", "offset")
@@ -71,11 +95,11 @@ def _indexed(text: str) -> str:
         first[name] = min(int(index), first.get(name, int(index)))
 
     def named(entry: re.Match[str]) -> str:
-        if entry[1].lower() in CALLED_Q:
+        if entry[1].lower() in CALLED_Q or LISTED_Q.fullmatch(entry[1].lower()):
             return f"q{int(entry[2]) + (first[entry[1]] == 0)}"
         return f"{entry[1]}{entry[2]}"
 
-    return INDEXED.sub(named, text)
+    return OF_LINK.sub(r"\1\2", INDEXED.sub(named, text))
 
 
 def _links(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
@@ -91,6 +115,8 @@ def _links(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
             raise InputError(f"line {line}: found a link with flip, expected links that turn the way of their axis")
         if (owner := ASSIGNED_TO.search(bare[max(0, match.start() - MAX_NAME) : match.start()])) and owner[1] in limits:
             told.setdefault("qlim", limits[owner[1]])
+        if match[3] and "offset" not in told and ORIGIN.search(bare):
+            told["offset"], told["theta"] = told.get("theta", ""), ""
         slides = _slides(match, told, words, bool(listed), line)
         free = "d" if slides else "theta"  # whatever number stands there
         told[free] = told[free] if re.search(r"[A-Za-z]", told.get(free, "").replace("pi", "")) else ""
@@ -177,6 +203,10 @@ def _records(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
     for match in islice(opened, MAX_RECORDS):
         parts = _parted(bare[match.end() : match.end() + MAX_CALL], ",")
         fields = [field for part in parts if (field := FIELD.fullmatch(part))]
+        if glued := next((field for field in fields if JOINED.search(field[2])), None):
+            raise InputError(
+                f"line {_line(bare, match.start())}: found '{shown(glued[0])}', expected a comma between the numbers"
+            )
         told = {field[1]: SYMBOL.sub(r"\1", _plain(field[2])) for field in fields}
         if {"d", "a", "alpha"} <= {*told} and len(told) == len(fields):
             found.append((_line(bare, match.start()), told))
@@ -242,12 +272,13 @@ def _matrix(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
     """The rows of a matrix or of a list of lists, below the headings that a comment beside it has."""
     if not MATRIX.search(bare):
         return [], []
+    bare = TUPLE.sub(r"\1[\2]\3", bare)
     rows = []
     for match in GROUP.finditer(bare):
         at = match.start(1)
         for part in re.split(r"([;\n])", match[1]):
             cells = _cells(part.strip().strip(","))
-            if len(cells) > 1:
+            if len(cells) > 1 and not DICTIONARY.match(part):
                 rows.append(PastedRow(_line(bare, at + len(part) - len(part.lstrip())), cells))
             at += len(part)
     width = max((len(row.cells) for row in rows), default=0)
@@ -256,13 +287,37 @@ def _matrix(bare: str, text: str) -> tuple[list[PastedRow], list[str]]:
     for row in rows:
         if len(row.cells) != width:
             raise InputError(f"line {row.line}: found {len(row.cells)} numbers, expected {width} as in other rows")
+    told = [headings for headings in (_commented(text, width), _unpacked(bare, width)) if headings]
+    if len({tuple(heading_of(cell).meaning for cell in headings.cells) for headings in told}) > 1:
+        raise InputError(
+            f"line {told[1].line}: found {', '.join(told[1].cells)} and in line {told[0].line} "
+            f"{', '.join(told[0].cells)}, expected one order of a row's numbers, or --columns"
+        )
+    return [*told[:1], *rows], []
+
+
+def _commented(text: str, width: int) -> PastedRow | None:
+    """The comment of a program that has the headings of a matrix: of several that of which most is understood."""
+    found: list[tuple[int, PastedRow]] = []
     for number, line in enumerate(text.split("\n"), start=1):
         if comment := COMMENT.search(line):
             body = re.sub(r"^[^\[]*\[|[\];].*$", "", comment[1]).strip(" ;.")
-            cells = tuple(cell.strip() for cell in body.split(",")) if "," in body else tuple(body.split())
-            if len(cells) == width and len({heading_of(cell).meaning for cell in cells} & {*TABLE}) > 2:
-                return [PastedRow(number, cells), *rows], []
-    return rows, []
+            separator = next((sign for sign in "|," if sign in body), None)
+            cells = tuple(cell.strip() for cell in body.split(separator))
+            meanings = [heading_of(cell).meaning for cell in cells]
+            if len(cells) == width and len({*meanings} & {*TABLE}) > 2:
+                found.append((-sum(map(bool, meanings)), PastedRow(number, cells)))
+    return min(found, key=lambda one: one[0])[1] if found else None
+
+
+def _unpacked(bare: str, width: int) -> PastedRow | None:
+    """The headings of a matrix where its rows are taken apart, in one order alone."""
+    found = {}
+    for match in UNPACKED.finditer(bare):
+        cells = tuple(cell.strip() for cell in match[1].split(","))
+        if len(cells) == width and len({heading_of(cell).meaning for cell in cells} & {*TABLE}) > 3:
+            found[cells] = PastedRow(_line(bare, match.start(1)), cells)
+    return next(iter(found.values())) if len(found) == 1 else None
 
 
 def _line(text: str, at: int) -> int:

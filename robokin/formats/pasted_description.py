@@ -11,7 +11,8 @@ from robokin.errors import ExpressionError, InputError, or_list, shown
 from robokin.formats.description_lines import yaml_text
 from robokin.formats.expression_tokens import NAME
 from robokin.formats.number_expressions import RESERVED, Scope, evaluate
-from robokin.formats.pasted_cells import plain_text, read_expression
+from robokin.formats.pasted_cells import UNITS, plain_text, read_expression
+from robokin.formats.pasted_code import OF_LINK
 from robokin.formats.pasted_conventions import CONVENTIONS, convention_of
 from robokin.formats.pasted_headings import TABLE, PastedHeading, heading_of, units_of_row
 from robokin.formats.pasted_joints import FUNCTIONS, IDENTIFIER, KINDS, NUMBERED, JointDraft, TableReader
@@ -23,11 +24,16 @@ from robokin.units import METRES, Units
 
 PLAIN_NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 ASSIGNED = re.compile(
-    r"(?<!\w)([A-Za-z]\w*)\s*=\s*(-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(mm|cm|m|in|deg|°|rad)?"
+    r"(?<!\w)([A-Za-z]\w*)\s*=\s*"
+    r"(-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|-?(?:\d{1,3}\s?\*\s?)?pi(?:\s?/\s?\d{1,3})?)"
+    r"\s*(mm|cm|m|in|deg|°|rad)?"
     r"(?![\w°]|[.,]\d|\s*[-+*/^(]\s*[\w(.])"
 )
 """A name and the number that it is: of `L1 = 0.3 + 0.1` the first number is not its value."""
 
+
+REMARKED = re.compile(r"[#%/].{0,80}?(?:\bin |[\[(])\s?(mm|cm|m|inch(?:es)?|deg|degrees?|rad|radians?)\b(?!/)[\])]?")
+"""A unit in the remark behind a value: `a1 = 13  # length of link a1 in cm`, `d1 = 0.09;  % [m]`."""
 
 CHAINED = re.compile(r"=([\d.+\-*/ ()]{1,80})=\s*(-?(?:\d+\.?\d*|\.\d+))(?![\w.])")
 """A number with how it comes about: `0.33 + 0.42 = 0.75`."""
@@ -95,11 +101,10 @@ def described_table(text: str, wishes: Wishes) -> PastedRobot:
         (draft.angle_units if unit in ("deg", "rad") else draft.length_units).add(unit)
     names = _parameters(draft.rows)
     draft.angle_units |= {unit for name in names if (unit := _assigned_angle(assigned, name))}
-    angle, said = angle_unit(headings, draft, wishes.angle)
+    angles = {name: values[name] for name in _named_in(draft.rows, names, ANGLES) if name in values}
+    angle, said = angle_unit(headings, draft, angles, wishes.angle)
     notes += said
-    lengths = [
-        name for name in names if any(name in IDENTIFIER.findall(row.cells[c]) for row in draft.rows for c in "da")
-    ]
+    lengths = _named_in(draft.rows, names, ("d", "a"))
     draft.length_units |= {assigned[name][1] for name in lengths if name in assigned} & {*METRES}
     length, said = length_unit(headings, draft, [values[name] for name in lengths if name in values], wishes.length)
     notes += said
@@ -130,6 +135,11 @@ def described_table(text: str, wishes: Wishes) -> PastedRobot:
     )
     types = "".join(row.kind for row in draft.rows)
     return PastedRobot(text + "\n", types, Units(length, angle), convention, tuple(notes), missing)
+
+
+def _named_in(rows: list[JointDraft], names: list[str], columns: tuple[str, ...]) -> list[str]:
+    """Those of some names that stand in cells of these columns."""
+    return [name for name in names if any(name in IDENTIFIER.findall(row.cells[c]) for row in rows for c in columns)]
 
 
 def _refuse_factors(lines: list[str]) -> None:
@@ -230,11 +240,14 @@ def _assigned(lines: list[str]) -> dict[str, tuple[str, str]]:
     found: dict[str, set[tuple[str, str]]] = {}
     for line in lines:
         line = re.sub(r"(?<=[A-Za-z])_(?=\d)", "", plain_text(line[:MAX_LINE].replace("&=", "=")))
+        line = OF_LINK.sub(r"\1\2", re.sub(r"(?<!\w)(?:[A-Za-z]\w{0,20}\.pi|PI|Pi)\b", "pi", line))
         line = CHAINED.sub(_chained, line)
-        for match in ASSIGNED.finditer(line):
+        matches = [*ASSIGNED.finditer(line)]
+        for match in matches:
             if re.search(r"(?<!\d)(?<!\d )\b[A-Za-z]\w{0,40}\s?,\s?$", line[: match.start()]):
                 continue  # of `d1, d2 = 0.1, 0.2` the first number is that of d1
-            found.setdefault(match[1], set()).add((match[2], match[3] or ""))
+            remark = REMARKED.search(line, match.end()) if len(matches) == 1 else None
+            found.setdefault(match[1], set()).add((match[2], match[3] or (UNITS[remark[1]] if remark else "")))
     return {
         name: next(iter(values)) for name, values in found.items() if len(values) == 1
     }  # of two values none is taken

@@ -8,11 +8,16 @@ from functools import lru_cache
 
 from robokin.formats.pasted_cells import UNITS, plain_text
 
+CHINESE_NUMBERS = (
+    "序号", "编号", "关节", "连杆", "关节序号", "连杆序号", "关节编号", "连杆编号", "关节号", "连杆号",
+)  # fmt: skip
+"""Headings of the column of numbers: serial number, joint, link."""
+CHINESE = re.compile(r"[\u4e00-\u9fff]+")
 NAMES = {
     "theta": ("theta", "th", "thetai", "jointangle", "angle", "thj", "thetaj", "angletheta", "rotz", "rot_z", "phi",
               "phii", "fi"),
-    "d": ("d", "di", "dj", "linkoffset", "jointoffset", "jointdistance", "distance", "offsetd", "transz", "s", "si",
-          "b", "bi", "dz"),
+    "d": ("d", "di", "dj", "linkoffset", "jointoffset", "jointdistance", "distance", "dist", "offsetd", "transz",
+          "s", "si", "b", "bi", "dz"),
     "a": ("a", "ai", "aj", "linklength", "length", "l", "li", "lengtha", "transx"),
     "alpha": ("alpha", "al", "alphai", "alphaj", "twist", "linktwist", "twistangle", "jointtwist", "rotx", "rot_x"),
     "r": ("r", "ri", "rj"),
@@ -22,7 +27,7 @@ NAMES = {
     "type": ("type", "jointtype", "rp", "kind", "p/r", "r/p", "typeofjoint"),
     "number": ("", "i", "j", "k", "n", "no", "no.", "nr", "#", "link", "axis", "frame", "row", "linki", "jointi",
                "number", "linkno", "links", "joints", "frames", "frameitoi+1", "transform", "transformation",
-               "jointno", "link#", "joint#", "jointnumber", "linknumber", "axisi", "element"),
+               "jointno", "link#", "joint#", *CHINESE_NUMBERS, "jointnumber", "linknumber", "axisi", "element"),
     "name": ("name", "jointname", "linkname", "joint"),
     "variable": ("q", "qi", "qj", "variable", "jointvariable", "var", "jointvar"),
     "low": ("min", "qmin", "thetamin", "lower", "lowerlimit", "minimum", "qi,min", "from", "minlimit", "lowerbound",
@@ -79,7 +84,8 @@ def heading_of(text: str) -> PastedHeading:
     after = bool(AFTER.search(name))
     name = AFTER.sub("", BEFORE.sub("", name))
     without, within = re.sub(bracket, "", name), re.sub(r"^.*" + bracket, r"\1", name)
-    for candidate in (name, without, within, re.sub(r",?(theta|alpha|a|d)(i)?$", "", name) or name):
+    letters = CHINESE.sub("", name) or name  # such as 连杆长度a
+    for candidate in (name, without, within, letters, re.sub(r",?(theta|alpha|a|d)(i)?$", "", name) or name):
         if candidate in MEANINGS:
             return PastedHeading(MEANINGS[candidate], text.strip(), tuple(units), before, after)
     for pattern, meaning in ((SHIFT, "offset"), (RANGE, "limits")):

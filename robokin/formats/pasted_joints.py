@@ -233,8 +233,15 @@ class TableReader:
     def _said(self, k: int) -> str:
         """What a row says of its type, in a column of its own or beside its number, as in 3(P)."""
         row = self.rows[k]
-        beside = re.fullmatch(r"\w+\s*\(([RP])\)", plain_text(self.text("number", row)))
-        return self.text("type", row) or (beside[1] if beside else "")
+        beside = re.fullmatch(r"\w+\s*\((\w+)(\W*)\)", plain_text(self.text("number", row)))
+        if beside is None or beside[1].lower() not in KINDS:
+            return self.text("type", row)
+        if beside[2]:
+            raise InputError(
+                f"line {row.line}: found '{shown(beside[1] + beside[2])}' beside the number, expected R (revolute), "
+                "P (prismatic) or nothing"
+            )
+        return self.text("type", row) or beside[1]
 
     def kind(self, k: int) -> str:
         """The letter of a row. Raises InputError where nothing says it."""
@@ -275,7 +282,7 @@ class TableReader:
         constant = "" if re.fullmatch(r"0*\.?0*", text) else text
         if called:
             constant = re.sub(rf"(?<!\w){re.escape(called)}(?!\w)", "", constant).strip() if text else ""
-            plain = text in ("", called) or not constant.endswith(("-", "+", "*", "/"))
+            plain = text in ("", called) or not re.search(r"[-+*/]\s*(?:\)|$)|\(\s*(?:[*/]|\))", constant)
         sense = plain_text(self.text("sense", self.rows[k])).lstrip("+")
         if sense not in ("", "1", "1.0", "-1", "-1.0"):
             raise InputError(f"line {self.rows[k].line}: found the sense '{shown(sense)}', expected 1 or -1")

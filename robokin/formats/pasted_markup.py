@@ -15,7 +15,7 @@ CELL = re.compile(r"<t[dh]\b([^<>]*)>(.{0,1000}?)(?=</t[dh]\s*>|<t[dh]\b|$)", re
 ENTITY = re.compile(r"&#?\w{1,31};")
 OTHER = re.compile(r"</?[A-Za-z][^<>]{0,400}>")
 TILDED = re.compile(r"(?<=\w)~([\w+\-]{1,5})~(?!\w)")
-WIKI = re.compile(r"(?m)^\s*\{\|")
+WIKI = re.compile(r"(?m)^[ \t]*\{\|")
 HIDDEN = re.compile(r"<!--|-->|<(script|style)\b.{0,2000}?</\1\s*>", re.IGNORECASE | re.DOTALL)
 
 
@@ -26,8 +26,8 @@ def without_markup(text: str) -> str:
     """
     text = TILDED.sub(r"_{\1}", text)  # of Pandoc and AsciiDoc
     if WIKI.search(text):
-        text = re.sub(r"(?m)^\s*(?:\{\||\|[-}+]).*$", "", text)
-        text = re.sub(r"(?m)^\s*[!|](.*)$", lambda row: "|" + re.sub(r"\|\||!!", "|", row[1]) + "|", text)
+        text = re.sub(r"(?m)^[ \t]*(?:\{\||\|[-}+]).*$", "", text)
+        text = re.sub(r"(?m)^[ \t]*[!|](.*)$", lambda row: "|" + re.sub(r"\|\||!!", "|", row[1]) + "|", text)
     if not TAG.search(text) and not ENTITY.search(text):
         return text
     text = HIDDEN.sub(lambda found: "\n" * found[0].count("\n"), text)

@@ -40,10 +40,13 @@ GLUED = re.compile(r"(?<=[\w)°.*]) ?([-+−–]) (?=[\w(.π√])|(?<=\d) (?=(?:
 """Blanks within a cell: around a sign, and before a unit."""
 
 WHOLE = re.compile(
-    r"\[[^\[\]]{1,80}\]|\b(?:Joint|Link|Axis|Frame) \d{1,2}\b|\w \[(?:rad|deg|mm|cm|m|kg) ?\]", re.IGNORECASE
+    r"\[[^\[\]]{1,80}\]|\b(?:Joint|Link|Axis|Frame) (?:\d{1,2}|i)\b|\w \[(?:rad|deg|mm|cm|m|kg) ?\]", re.IGNORECASE
 )
 """What has blanks and is one cell in columns of text: a list, the name of a joint, a heading and its unit."""
 
+
+REMARK = re.compile(r"(?i)\|([^|]{1,20})(\|.*\|)\s*\(?(revolute|prismatic)(?: joint)?\)?")
+"""A line of a table with its joint's type behind it."""
 
 NUMBER = re.compile(r"(?i)(?:[a-z]{1,8}[ _.]?)?\d{1,2}(?:\W.*)?")
 """How the first cell of a joint's row begins."""
@@ -228,6 +231,8 @@ def _parts(line: str, separator: str) -> tuple[str, ...]:
     """The cells of a line."""
     if separator == "|":
         line = BARS.sub("|", line).strip()
+        if remark := REMARK.fullmatch(line):  # such as | 3 | 0 | d₃ | 0 | 0 | (prismatic)
+            line = f"| {remark[1].strip()} ({remark[3][0].upper()}){remark[2]}"
         cells = line.split("|")
         cells = cells[1:] if line.startswith("|") else cells
         cells = cells[:-1] if line.endswith("|") and len(cells) > 1 else cells

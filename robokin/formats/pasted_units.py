@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 
 from robokin.errors import InputError
 from robokin.formats.pasted_headings import PastedHeading
@@ -16,10 +17,26 @@ MILLIMETRES_FROM = 10.0
 """Lengths without a unit of which one is at least this are taken for millimetres: no arm of a lecture is 10 m long."""
 
 
-def angle_unit(headings: list[PastedHeading], draft: TableDraft, wished: str | None) -> tuple[str, list[str]]:
-    """The unit of angles, and what is to be told of it. Raises InputError where it cannot be told, or is told twice."""
+def angle_unit(
+    headings: list[PastedHeading], draft: TableDraft, values: Mapping[str, str], wished: str | None
+) -> tuple[str, list[str]]:
+    """The unit of angles, and what is to be told of it; values: those of names in cells of angles.
+
+    Raises InputError where it cannot be told, or is told twice, and for a part of pi that would be read as degrees.
+    """
+    unit, notes = _angle_unit(headings, draft, values, wished)
+    if unit == "deg" and (of_pi := next((name for name, value in values.items() if "pi" in value), None)):
+        raise InputError(
+            f"found {of_pi} = {values[of_pi]} beside angles in degrees, expected degrees, with --set {of_pi}=VALUE"
+        )
+    return unit, notes
+
+
+def _angle_unit(
+    headings: list[PastedHeading], draft: TableDraft, values: Mapping[str, str], wished: str | None
+) -> tuple[str, list[str]]:
     named = draft.angle_units | {unit for heading in headings for unit in heading.units if unit in ("deg", "rad")}
-    texts = [row.cells[name] for row in draft.rows for name in ANGLES]
+    texts = [*values.values(), *(row.cells[name] for row in draft.rows for name in ANGLES)]
     texts += [limit for row in draft.rows if row.kind == "R" for limit in row.limits or ()]
     numbers = [number for text in texts if not re.search(r"\bpi\b", text) for number in _numbers(text) if number[0]]
     if wished is not None and named and wished not in named:
@@ -78,5 +95,5 @@ def length_unit(
 
 def _numbers(text: str) -> list[tuple[float, str]]:
     """The numbers in an expression, with their digits."""
-    found = re.finditer(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])", text)
+    found = re.finditer(r"(?<![\w.])(?<!\*\*)(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])", text)
     return [(float(match[0]), match[0]) for match in found]

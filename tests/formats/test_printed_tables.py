@@ -49,6 +49,61 @@ TABLES = {
         "a MATLAB function GetDH of the OpenManipulator-X", "modified", "mm",
         "R 0 77 0 0; R -90 0 0 -90; R 90 0 128 0; R 0 0 124 0; F 0 0 126 0", {"types": "RRRRF"},
     ),
+    "named_links": Printed(
+        "TickTockTime/Robotics-2018, Lab1_stanford.m: the twists have names", "standard", "m",
+        "R 0 0 0 -90; R 0 .1 0 90; P 0 0 0 0; R 0 .5 0 90; R 0 0 0 -90; R 0 0 0 0",
+    ),
+    "leg_vectors": Printed(
+        "BomingHu123/matlab_dq_hexapod, dhnormal.m: Link([th(1), d(1), a(1), alp(1)])", "standard", "m",
+        "R 0 -.0112 .0503 -90; R 0 0 .0724 0; R 0 0 0 0",
+    ),
+    "taken_apart": Printed(
+        "a script on the Gen3 Lite: alpha, a, d, theta = DH_table[i]", "standard", "m",
+        "R 0 .2433 0 90; R 90 .03 .28 180; R 90 .02 0 90; R 90 .245 0 90; R 180 .057 0 90; R 90 .235 0 0",
+    ),
+    "planar_comment": Printed(
+        "deemano/roboticArm, main.py: headings in a comment, centimetres in others", "standard", "cm",
+        "R 0 13 5.1 90; R 0 0 6.65 0; R 0 4.9 6.55 0", {"values": {"a3": "6.65", "a4": "6.55", "a5": "4.9"}},
+    ),
+    "tuples": Printed(
+        "frank20a/Robotics, data.py: rows are tuples", "standard", "m",
+        "R 0 .183 0 0; R -90 0 0 -90; R 0 0 .21 0; R 180 .2215 .03 -90; R 0 0 0 90; R 0 .0237 .0055 -90",
+        {"columns": ("alpha", "a", "d", "theta")},
+    ),
+    "chinese": Printed(
+        "a paper at hanspub.org, a cell a line, as its page is copied", "standard", "m",
+        "R 0 0 1 90; R 0 0 2 0; R 0 0 3 0", {"values": {"l0": "1", "l1": "2", "l2": "3"}},
+    ),
+    "ikpy_links": Printed(
+        "a chain of ikpy, whose DHLink adds its theta", "standard", "m",
+        "R 0 .1075 0 90; R 90 0 .0985 0; R 0 0 .0985 0; R 0 0 .0845 0",
+    ),
+    "scara_remark": Printed(
+        "a README: (prismatic) behind a line's end", "standard", "m", "R 0 1 2 0; R 0 0 3 0; P 0 0 0 0; R 0 0 0 0",
+        {"values": {"d1": "1", "a1": "2", "a2": "3"}},
+    ),
+    "ur5_symbols": Printed(
+        "a sympy script on the UR5: theta is q_syms[0]", "standard", "m",
+        "R 0 .1625 0 90; R 0 0 -.425 0; R 0 0 -.3922 0; R 0 .1333 0 90; R 0 .0997 0 -90; R 0 .0996 0 0",
+    ),
+    "seven_rows": Printed(
+        "an exercise in MATLAB, two comments of which name its columns", "standard", "m",
+        "F 90 1 0 90; R 0 2 0 90; R 0 4 3 -90; P 90 5 0 90; P 0 6 0 90; R 0 0 -7 180; P 0 8 0 0",
+        {"values": {"L0": "1", "L1": "2", "L2A": "3", "L2B": "4", "L3": "5", "L4": "6", "L5": "7", "L6": "8"}},
+    ),
+    "parentheses": Printed(
+        "uw-biorobotics/IKBT#8", "standard", "m",
+        "R 0 1 0 90; R 90 0 2 0; R 0 0 3 0; R 90 0 0 90; R 0 9 0 0; F 0 0 0 0",
+        {"columns": ("theta", "alpha", "a", "d"), "values": {"d1": "1", "d2": "2", "d3": "3", "d4": "4", "d5": "5"}},
+    ),
+    "double_bars": Printed(
+        "siddarth09/Robotics-for-arm-manpulation, README", "standard", "mm", "R 60 0 24 0; R 45 0 30 180",
+        {"types": "RR"},
+    ),
+    "kuka_entities": Printed(
+        "another report on the KR210: its page says modified elsewhere", "modified", "m", KR210,
+        {"convention": "modified"},
+    ),
     "kr5_links": Printed(
         "P. Corke's mdl_KR5, in ros-industrial/kuka_experimental#130", "standard", "m",
         "R 0 0.4 0.18 90; R 0 0.135 0.6 180; R 0 0.135 0.12 -90; R 0 0.62 0 90; R 0 0 0 -90; R 0 0 0 0",
@@ -251,7 +306,7 @@ def test_a_printed_table_is_its_robot(name):
     assert made.types == "".join(row[0][-1] for row in rows)
     assert (made.convention, made.units.length, made.missing) == (printed.convention, printed.length, ())
     robot = read_text(made.text)
-    scale = {"m": 1.0, "mm": 1e-3}[printed.length]
+    scale = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}[printed.length]
     for q in np.random.default_rng(7).uniform(-2.0, 2.0, (5, robot.n)):
         T = robokin.forward_kinematics(robot, q)
         assert np.abs(T - pose(printed.convention, scale, rows, q)).max() < 2e-5  # -1.5708 is a rounded right angle
@@ -310,6 +365,13 @@ FIRST = HEADS + "1\tθ1\t0\t0.1\t90°\n"
             "line 1: found d, a, alpha, theta",
         ),
         ("<tr><td>θ<td>d<td>a<td>α</tr>\n<tr><td colspan=2>1<td>2<td>90</tr>", "line 2: found a cell over several"),
+        (HEADS + "1(R)\tθ1\t0\t1\t90°\n2(P*)\tθ2\t0\t1\t0\n", r"line 3: found 'P\*' beside the number"),
+        ("alpha1 = -pi/2\n" + FIRST + "2\tθ2\t0\t1\talpha1\n", "found alpha1 = -pi/2 beside angles in degrees"),
+        ("alpha1 = 0.4\n" + HEADS + "1\tθ1\t0\t1\talpha1\n2\tθ2\t0\t1\t0\n", "found angles such as 0.4 without"),
+        (
+            "# theta, d, a, alpha\nm = [[q1, 0, 0.1, 0], [q2, 0, 0.2, 0]]\nfor a, alpha, d, theta in m:\n",
+            "line 3: found a, alpha, d, theta and in line 1 theta, d, a, alpha",
+        ),
         (HEADS + "1\tθ1\t0\t" + "1" * 5000 + "\t90°\n", "line 2: found a cell of 5000 characters"),
     ],
 )
@@ -416,7 +478,25 @@ def test_cells_on_lines_of_their_own_are_a_table_only_where_rows_are_numbered():
             of_table(wrong, Wishes())
 
 
-@pytest.mark.parametrize("part", ["<script>", "<tr><td>", "{", "f(alpha=", "q[1]", "x" * 199, "Link('d',1)", "~a~"])
+@pytest.mark.parametrize(
+    "part",
+    [
+        " ",
+        "\n",
+        "(1,",
+        "a,b,c,d\n",
+        "x=(",
+        "|3|(prismatic)",
+        "<script>",
+        "<tr><td>",
+        "{",
+        "f(alpha=",
+        "q[1]",
+        "x" * 199,
+        "Link('d',1)",
+        "~a~",
+    ],
+)
 def test_a_text_of_nothing_else_is_refused(part):
     """However long: none of these ends in more than a sentence, or in a search without an end."""
     with pytest.raises(InputError):
