@@ -32,6 +32,10 @@ class Floats:
     arctan2 = staticmethod(math.atan2)
     cos = staticmethod(math.cos)
     sin = staticmethod(math.sin)
+    sqrt = staticmethod(math.sqrt)
+    rint = staticmethod(round)
+    maximum = staticmethod(max)
+    minimum = staticmethod(min)
 
     @staticmethod
     def hypot(x: float, y: float) -> float:

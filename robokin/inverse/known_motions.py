@@ -16,11 +16,12 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis
 from robokin.inverse.claims import COUNTED, SPREAD, Claims, unclaimed
+from robokin.inverse.self_motion.one_swivel import moving_joints
 from robokin.inverse.self_motion.swivel_arcs import swivel_arcs
 from robokin.inverse.self_motion.swivel_arm import swivel_arm
 from robokin.inverse.self_motion.swivel_curves import TURN, SwivelCurves
 from robokin.inverse.self_motion.swivel_members import SwivelAnswers, swivel_answers
-from robokin.inverse.self_motion.swivel_pieces import WEIGHTS, SwivelPieces
+from robokin.inverse.self_motion.swivel_pieces import CODES, SwivelPieces
 from robokin.inverse.solutions import Family, arc_later
 from robokin.inverse.verify import SAME, Found, merged
 from robokin.model.robot import LIMIT_TOLERANCE
@@ -31,14 +32,11 @@ ALL_MOTIONS = f"{SPREAD}; the self-motions are known in closed form"
 NO_MOTION = "the self-motions are known in closed form"
 """What is said of a target without."""
 
+MOVING = [tuple(i + 1 for i in range(7) if bits >> i & 1) for bits in range(128)]
+"""Joints, from 1, by bits."""
+
 NO_ELBOW = "no value of the elbow brings the wrist as far from the shoulder as the pose has it"
 """The same where the wrist cannot be there."""
-
-STILL = 1e-9
-"""A joint [rad] that moves by less along a curve stands still."""
-
-LOOKS = np.linspace(-np.pi, np.pi, 13)[:-1]
-"""Values of ψ at which it is seen which joints move."""
 
 
 def known_motions(
@@ -90,11 +88,9 @@ def known_families(known: SwivelAnswers, i: int, limits: Array, listed: Array) -
 
     if turns_on(limits) and not arcs()[1]:
         return None
-    signs = pieces.signs[chosen]
-    _, first, of = np.unique(signs @ WEIGHTS[1:], return_index=True, return_inverse=True)
-    motions = signs[first]
-    moving = _moving(curves, i, motions)
-    stands = _standing(curves, i, motions, listed)
+    codes, of = np.unique(pieces.code[chosen], return_inverse=True)
+    moving = [MOVING[bits] for bits in moving_joints(curves, i, codes)]
+    stands = _standing(curves, i, CODES[codes], listed)
     families = []
     for number in np.argsort(np.where(stands < 0, len(listed), stands), kind="stable").tolist():
         own = tuple(
@@ -119,15 +115,6 @@ def _one(arcs: Callable[[], tuple[list[Array], bool]], k: int) -> Array:
 
 def _interval(pieces: SwivelPieces, piece: int) -> tuple[float, float]:
     return float(pieces.first[piece]), float(pieces.last[piece])
-
-
-def _moving(curves: SwivelCurves, i: int, motions: Index) -> list[tuple[int, ...]]:
-    """The joints, from 1, that move along curves of target i with signs (c, 3)."""
-    c, k = len(motions), len(LOOKS)
-    q = curves.configurations(np.full(c * k, i), np.repeat(motions, k, axis=0), np.tile(LOOKS, c)).reshape(c, k, 7)
-    away = q - q[:, :1]
-    moves = np.max(np.abs(away - TURN * np.round(away / TURN)), axis=1) > STILL
-    return [tuple((np.flatnonzero(row) + 1).tolist()) for row in moves]
 
 
 def _standing(curves: SwivelCurves, i: int, motions: Index, listed: Array) -> Index:

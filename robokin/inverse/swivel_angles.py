@@ -10,15 +10,13 @@ from robokin.errors import InputError
 from robokin.expected import expect_flag, expect_numbers
 from robokin.inverse.self_motion.swivel_arm import SwivelArm, swivel_arm
 from robokin.inverse.self_motion.swivel_curves import swivel_curves
+from robokin.inverse.self_motion.swivel_pieces import CODES
 from robokin.inverse.solve import target_poses
 from robokin.inverse.verify import within_limits
 from robokin.kernel.chain import chain_of
 from robokin.kernel.frames import pose
 from robokin.model import Robot, expect_robot
 from robokin.model.named_values import plain_joint_values
-
-SIGNS = np.array([[e, s, w] for e in (0, 1) for s in (0, 1) for w in (0, 1)])
-"""All signs of elbow, shoulder and wrist."""
 
 
 def swivel_angle(robot: Robot, q: ArrayLike) -> Array:
@@ -62,7 +60,7 @@ def swivel_solutions(robot: Robot, T: ArrayLike, swivel: float, limits: bool = T
         raise InputError(f"swivel: found {swivel!r}, expected one finite angle [rad]")
     limits = expect_flag(limits, "limits")
     curves = swivel_curves(arm, poses[None])
-    signs = SIGNS[curves.real[0, SIGNS[:, 0]]]
+    signs = CODES[curves.real[0, CODES[:, 0]]]
     count = len(signs)
     q = curves.configurations(np.zeros(count, dtype=np.intp), signs, np.full(count, float(angle)))
     if not limits:

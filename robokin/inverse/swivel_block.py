@@ -9,7 +9,7 @@ a list without regard to limits, and one of more than `MOST_LISTED`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from typing import Any
@@ -20,9 +20,10 @@ from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis, analysis_of
 from robokin.inverse.claims import Claims
 from robokin.inverse.full_turns import count_equivalents, turning
-from robokin.inverse.known_motions import ALL_MOTIONS, turns_on
+from robokin.inverse.known_motions import ALL_MOTIONS, MOVING, turns_on
 from robokin.inverse.numeric.nearest import free_at
 from robokin.inverse.self_motion.native_swivel import MOST_LISTED, native_swivel
+from robokin.inverse.self_motion.one_swivel import Answer, OneSwivel, one_swivel
 from robokin.inverse.self_motion.swivel_arcs import swivel_arcs
 from robokin.inverse.self_motion.swivel_arm import SwivelArm, swivel_arm
 from robokin.inverse.self_motion.swivel_curves import swivel_curves
@@ -37,16 +38,10 @@ from robokin.model import Robot
 from robokin.model.robot import LIMIT_TOLERANCE
 from robokin.spatial.angles import TURN
 
-SIGNS = np.array([[code >> 2, code >> 1 & 1, code & 1] for code in range(8)])
-"""The places of a curve's signs of elbow, shoulder and wrist, by its number in the kernel."""
-
-MOVING = [tuple(i + 1 for i in range(7) if bits >> i & 1) for bits in range(128)]
-"""Joints, from 1, by bits."""
-
 
 @dataclass(frozen=True, eq=False)
 class OneSwivelArm:
-    """A robot with what the kernel knows it by.
+    """A robot with what the native kernel knows it by, and what does without it.
 
     wide: whether intervals may not tell how a joint turns on; turned: whether full turns may be within the limits.
     """
@@ -54,15 +49,23 @@ class OneSwivelArm:
     robot: Robot
     analysis: Analysis
     arm: SwivelArm
-    kernel: object
+    kernel: object | None
+    alone: OneSwivel
     wide: bool
     turned: bool
+
+    def answer(self, T: Array, most: int) -> Answer | None:
+        """The kernel's numbers for a target T (4, 4) [m]; None where blocks are to answer."""
+        if native is None or self.kernel is None:
+            return self.alone.solution(T, most)
+        found: Answer | None = native.swivel_solution(self.kernel, T, most)
+        return found
 
 
 @fact
 def one_swivel_arm(robot: Robot) -> OneSwivelArm | None:
     """What is known of a robot; None for one that blocks are left to solve."""
-    if native is None or type(robot) is not Robot or robot.n != 7:
+    if type(robot) is not Robot or robot.n != 7:
         return None
     analysis = analysis_of(robot)
     arm = None if analysis.open or analysis.redundancy != 1 or analysis.idle else swivel_arm(analysis.chain)
@@ -70,11 +73,11 @@ def one_swivel_arm(robot: Robot) -> OneSwivelArm | None:
         return None
     request = Request(robot, analysis, True, None, "auto", None, 0)
     limits = request.own_limits
-    kernel = native_swivel(arm, limits, request.middle) if np.array_equal(limits, robot.limits) else None
-    if kernel is None:
+    if not np.array_equal(limits, robot.limits):
         return None
+    kernel, alone = native_swivel(arm, limits, request.middle), one_swivel(arm, limits, request.middle)
     turned = any(np.ptp(limits[i]) + 4.0 * LIMIT_TOLERANCE >= TURN for i in turning(robot))
-    return OneSwivelArm(robot, analysis, arm, kernel, turns_on(limits), turned)
+    return OneSwivelArm(robot, analysis, arm, kernel, alone, turns_on(limits), turned)
 
 
 def swivel_request(request: Request) -> OneSwivelArm | None:
@@ -84,7 +87,7 @@ def swivel_request(request: Request) -> OneSwivelArm | None:
     if request.most is not None and request.most > MOST_LISTED:
         return None
     known = one_swivel_arm(request.robot)
-    return None if known is None or known.analysis is not request.analysis else known
+    return None if known is None or known.kernel is None or known.analysis is not request.analysis else known
 
 
 class SwivelBlock(TargetBlock):
@@ -133,9 +136,10 @@ class SwivelBlock(TargetBlock):
     def families(self, i: int) -> tuple[Family, ...] | None:
         """The self-motions of target i; None where intervals of the swivel angle do not tell."""
         known = swivel_request(self.request)
-        assert native is not None
         assert known is not None
-        table, pieces, moving, *_ = native.swivel_solution(known.kernel, self.T[i], self.tables[1].shape[1])
+        found = known.answer(self.T[i], self.tables[1].shape[1])
+        assert found is not None
+        table, pieces, moving, *_ = found
         return swivel_families(known, self.T[i], table, pieces, moving)
 
 
@@ -152,7 +156,7 @@ class SwivelSolution:
     T: Array
     table: Array
     pieces: Array
-    moving: Index
+    moving: Sequence[int]
     closing: int
     within: int
 
@@ -181,16 +185,15 @@ def _at(find: Callable[[], list[Any]], k: int) -> Any:
 
 def solve_swivel(known: OneSwivelArm, T: Array, most: int | None) -> SwivelSolution | None:
     """The answer for a rigid target T (4, 4) [m] within the limits, or None where it is left to the blocks."""
-    assert native is not None
     if most is not None and most > MOST_LISTED:
         return None
     T = np.array(T)
-    found = native.swivel_solution(known.kernel, T, MOST if most is None else most)
+    found = known.answer(T, MOST if most is None else most)
     return None if found is None else SwivelSolution(known, T, *found)
 
 
 def swivel_families(
-    known: OneSwivelArm, T: Array, table: Array, pieces: Array, moving: Index
+    known: OneSwivelArm, T: Array, table: Array, pieces: Array, moving: Sequence[int]
 ) -> tuple[Family, ...] | None:
     """The self-motions of a target T (4, 4) [m] by the kernel's numbers, as `known_families` has them.
 
@@ -199,7 +202,7 @@ def swivel_families(
     arcs = cache(partial(_arcs, known, T, pieces))
     if known.wide and not arcs()[1]:
         return None
-    rows, bits = pieces.tolist(), moving.tolist()
+    rows = pieces.tolist()
     own: dict[float, list[int]] = {}
     for k, row in enumerate(rows):
         own.setdefault(row[0], []).append(k)
@@ -208,7 +211,7 @@ def swivel_families(
     families = []
     for code in sorted(own, key=lambda code: first.get(code, len(listed))):
         parts = [arc_later(partial(_one, arcs, k), rows[k][3] != 0.0, (rows[k][1], rows[k][2])) for k in own[code]]
-        families.append(Family(MOVING[bits[int(code)]], 1, True, tuple(parts), first.get(code, -1)))
+        families.append(Family(MOVING[moving[int(code)]], 1, True, tuple(parts), first.get(code, -1)))
     return tuple(families)
 
 
@@ -219,7 +222,7 @@ def _one(arcs: Callable[[], tuple[list[Array], bool]], k: int) -> Array:
 def _arcs(known: OneSwivelArm, T: Array, pieces: Array) -> tuple[list[Array], bool]:
     """The configurations along pieces (p, 4), and whether full turns bring all into the limits."""
     count = len(pieces)
-    row, signs = np.zeros(count, dtype=np.intp), SIGNS[pieces[:, 0].astype(np.intp)]
-    some = SwivelPieces(row, signs, pieces[:, 1], pieces[:, 2], pieces[:, 3] != 0.0, np.zeros(1, dtype=bool))
+    row, code = np.zeros(count, dtype=np.intp), pieces[:, 0].astype(np.intp)
+    some = SwivelPieces(row, code, pieces[:, 1], pieces[:, 2], pieces[:, 3] != 0.0, np.zeros(1, dtype=bool))
     found, fits = swivel_arcs(swivel_curves(known.arm, T[None]), some, np.arange(count), known.robot.limits)
     return found, bool(fits.all())

@@ -8,10 +8,8 @@ Dask and its scheduler come with `robokin[cluster]`; nothing of them is loaded b
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import logging
-import multiprocessing
 import os
 import pickle
 import signal
@@ -19,10 +17,8 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError, Future, InvalidStateError
 from importlib import import_module
 from typing import Any
-from weakref import WeakSet
 
 from robokin.errors import InputError, shown
 from robokin.jobs.executors import lent
@@ -58,12 +54,6 @@ SETTINGS = {
 
 
 _ALONE = "the cluster has had no worker for {:g} s, expected at least one until the work is done"
-
-WORKER_MODULE = "robokin.jobs.cluster_worker"
-"""What a worker of this machine does first."""
-
-WORKERS_LOAD = ("distributed.nanny", "robokin.workspace.analyse", "robokin.inverse.solve", "pyarrow.parquet")
-"""With what they load these are most of what tasks ask for; what is not installed is passed over."""
 
 LOGGERS = ("distributed", "distributed.client")
 """Of Dask's loggers those that have a level of their own."""
@@ -130,38 +120,24 @@ def _distributed() -> Iterator[Any]:
 @contextlib.contextmanager
 def _local_cluster(distributed: Any, workers: int) -> Iterator[str]:
     """The address of a scheduler whose workers are processes of this machine. Raises WorkerError."""
-    with _loaded_once(distributed):
-        try:
-            with no_interrupt(), _interrupts_ignored():
-                own = distributed.LocalCluster(
-                    n_workers=workers,
-                    threads_per_worker=1,
-                    processes=True,
-                    memory_limit=0,
-                    dashboard_address="127.0.0.1:0",
-                    silence_logs=logging.CRITICAL + 1,
-                    preload=WORKER_MODULE,
-                )
-        except Exception as error:
-            raise WorkerError(f"{LOCAL}:{workers} did not start ({_said(error)}), expected processes to work") from None
-        try:
-            yield str(own.scheduler_address)
-        finally:
-            with contextlib.suppress(Exception):
-                own.close(timeout=CONNECTING)
-
-
-@contextlib.contextmanager
-def _loaded_once(distributed: Any) -> Iterator[None]:
-    """Workers of this machine are forked off one process that has loaded Dask and most of robokin: by itself each
-    would load them for a second and a half. Where the system knows no such process, they do."""
-    if "forkserver" not in multiprocessing.get_all_start_methods():
-        yield
-        return
-    with import_module("dask").config.set({"distributed.worker.multiprocessing-method": "forkserver"}):
-        # After Dask's own list, which would load pandas too.
-        distributed.utils.get_mp_context().set_forkserver_preload([*WORKERS_LOAD, WORKER_MODULE])
-        yield
+    try:
+        with no_interrupt(), _interrupts_ignored():
+            own = distributed.LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                memory_limit=0,
+                dashboard_address="127.0.0.1:0",
+                silence_logs=logging.CRITICAL + 1,
+                preload="robokin.jobs.cluster_worker",
+            )
+    except Exception as error:
+        raise WorkerError(f"{LOCAL}:{workers} did not start ({_said(error)}), expected processes to work") from None
+    try:
+        yield str(own.scheduler_address)
+    finally:
+        with contextlib.suppress(Exception):
+            own.close(timeout=CONNECTING)
 
 
 @contextlib.contextmanager
@@ -218,9 +194,8 @@ class _ClusterExecutor:
     """Takes tasks for a cluster; each brings the versions along with which its answer would be the same."""
 
     def __init__(self, client: Any) -> None:
-        self.client, self.versions = client, versions()
-        self.given: WeakSet[Any] = WeakSet()
-        self.giving = threading.Lock()
+        self.client, self.executor = client, client.get_executor(pure=False)
+        self.versions = versions()
         self.alone, self.over = False, threading.Event()
         threading.Thread(target=self._look_for_workers, daemon=True).start()
 
@@ -229,18 +204,13 @@ class _ClusterExecutor:
         if self.alone:
             raise WorkerError(_ALONE.format(LEFT_ALONE))
         call = pickle.dumps(_Call(self.versions, fn, arguments))
-        task = self.client.submit(pickle.loads, call, pure=False)
-        with self.giving:
-            self.given.add(task)
-        return _ClusterPromise(self, task)
+        return _ClusterPromise(self, self.executor.submit(pickle.loads, call))
 
     def close(self) -> None:
         """What has not begun is left out."""
         self.over.set()
-        with self.giving:
-            tasks = [*self.given]
         with contextlib.suppress(Exception):
-            self.client.cancel(tasks)
+            self.executor.shutdown(wait=False)
 
     def _look_for_workers(self) -> None:
         """Give the tasks up when there has been no worker for a long time: Dask would wait for ever."""
@@ -267,32 +237,15 @@ class _Call:
 
 
 class _ClusterPromise:
-    """A task of a cluster; what went wrong with the cluster itself is said in sentences.
+    """A task of a cluster; what went wrong with the cluster itself is said in sentences."""
 
-    Dask's own executor takes a result that is there for an error if the worker that has it is lost in that moment.
-    """
-
-    def __init__(self, executor: _ClusterExecutor, task: Any) -> None:
-        self.executor, self.task = executor, task
-        self.promise: Future[Any] = Future()
-        executor.client.loop.add_callback(self._brought)
-
-    async def _brought(self) -> None:
-        """Have the result here as soon as there is one: what a worker holds is lost with it."""
-        try:
-            result = await self.task
-        except (asyncio.CancelledError, CancelledError):
-            self.promise.cancel()
-            self.promise.set_running_or_notify_cancel()
-        except Exception as error:
-            with contextlib.suppress(InvalidStateError):  # cancelled meanwhile
-                self.promise.set_exception(error)
-        else:
-            with contextlib.suppress(InvalidStateError):
-                self.promise.set_result(result)
+    def __init__(self, executor: _ClusterExecutor, promise: Any) -> None:
+        self.executor, self.promise = executor, promise
 
     def result(self) -> Any:
         """What the function gave, or its error. Raises WorkerError where the cluster has lost it for good."""
+        from concurrent.futures import CancelledError
+
         try:
             return self.promise.result()
         except CancelledError:
@@ -312,8 +265,7 @@ class _ClusterPromise:
 
     def cancel(self) -> None:
         """Leave the task out if it has not begun."""
-        if self.promise.cancel():
-            self.task.cancel()
+        self.promise.cancel()
 
     def add_done_callback(self, fn: Callable[[Any], object], /) -> None:
         """Have a function called when the task is over."""

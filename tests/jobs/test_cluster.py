@@ -7,7 +7,6 @@ import os
 import subprocess
 import sys
 import time
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -139,8 +138,3 @@ def test_without_dask_a_sentence_says_what_to_install():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 2
     assert "expected Dask: pip install 'robokin[cluster]'" in done.stderr
-
-
-def test_what_workers_of_this_machine_load_beforehand_is_there():
-    for name in (*clusters.WORKERS_LOAD, clusters.WORKER_MODULE):
-        assert import_module(name).__name__ == name

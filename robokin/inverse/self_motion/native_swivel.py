@@ -10,8 +10,9 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.self_motion.swivel_arm import SwivelArm
+from robokin.inverse.self_motion.swivel_curves import plain_arm
 from robokin.inverse.self_motion.swivel_members import COUNTS
-from robokin.inverse.self_motion.swivel_pieces import SwivelBounds
+from robokin.inverse.self_motion.swivel_pieces import TRIPLES, SwivelBounds
 from robokin.kernel.native_kernel import handle, native
 from robokin.model.robot import tolerated
 
@@ -24,16 +25,14 @@ def native_swivel(arm: SwivelArm, limits: Array, rest: Array) -> object | None:
     chain = handle(arm.chain)
     if native is None or chain is None:
         return None
-    C, triples, bounds = arm.chain.constants, arm.triples, SwivelBounds(arm, limits)
+    triples, bounds = arm.triples, SwivelBounds(arm, limits)
     numbers = [
-        [arm.size], C[0][:3, :3], C[0][:3, 3], arm.wrist, arm.shoulder, arm.hand,
-        C[3][:3, :3].T @ (arm.upper - C[3][:3, 3]), arm.lower, C[3][:3, :3], C[3][:3, 3], C[4][:3, :3], arm.upper,
-        arm.elbow, triples.k, triples.r, np.cos(triples.phi), np.sin(triples.phi), triples.u, triples.v,
+        [arm.size], *vars(plain_arm(arm)).values(), triples.k, triples.r, triples.cos_phi, triples.sin_phi, triples.u,
+        triples.v,
     ]  # fmt: skip
     table = np.zeros((7, 6))
-    table[[0, 1, 2, 4, 5, 6], 0] = bounds.middle.reshape(6)
-    table[[0, 1, 2, 4, 5, 6], 1] = bounds.half.reshape(6)
-    table[[0, 1, 2, 4, 5, 6], 2] = bounds.stops.reshape(6)
+    for column, number in enumerate((bounds.middle, bounds.half, bounds.stops)):
+        table[TRIPLES, column] = number[:, 0, 0, :, 0, 0].T
     table[3, :2] = bounds.elbow
     table[:, 3], table[:, 4] = tolerated(limits)
     table[:, 5] = rest

@@ -14,6 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
+from robokin.spatial.angles import TURN
 
 CELLS = 2**15
 """Configurations at a time: the tables stay in cache."""
@@ -39,6 +40,8 @@ def well_spread(index: Index, x: Array, revolute: Flags, move: Array, rank: Flag
     counts = np.diff(np.append(starts, len(index)))
     if not len(starts):
         return np.empty(0, dtype=np.intp)
+    if len(starts) == 1 and revolute.all():
+        return spread_of_one(x.T, move, most, np.asarray(PREFERRED * rank))
     chosen = []
     step = max(CELLS // int(counts.max()), 1)
     for a in range(0, len(starts), step):
@@ -49,6 +52,31 @@ def well_spread(index: Index, x: Array, revolute: Flags, move: Array, rank: Flag
         picked = _chosen(x.T[:, rows], revolute, filled, move[rows], rank[rows], min(most, len(place)))
         chosen.append((begin[:, None] + picked)[picked >= 0])
     return np.concatenate(chosen)
+
+
+def spread_of_one(x: Array, move: Array, most: int, preferred: Array | None = None) -> Index:
+    """The places of up to `most` well spread ones of configurations x (n, s) of turning joints, for one target.
+
+    move: (s,); preferred: (s,) what is added to a distance, if anything.
+    """
+    n, count = x.shape
+    away, back, gap, distance = np.empty((n, count)), np.empty((n, count)), np.empty(count), np.full(count, np.inf)
+    least = np.rint(move * 10.0**DECIMALS)
+    pick = int((least if preferred is None else least - preferred * 10.0**DECIMALS).argmin())
+    chosen = [pick]
+    while len(chosen) < min(most, count):
+        np.subtract(x, x[:, pick : pick + 1], out=away)
+        np.abs(away, out=away)
+        np.subtract(TURN, away, out=back)
+        np.minimum(away, back, out=away)
+        np.maximum.reduce(away, axis=0, out=gap)
+        np.multiply(gap, 10.0**DECIMALS, out=gap)
+        np.rint(gap, out=gap)
+        np.minimum(distance, gap, out=distance)
+        distance[pick] = -np.inf
+        pick = int((distance if preferred is None else distance + preferred * 10.0**DECIMALS).argmax())
+        chosen.append(pick)
+    return np.array(chosen, dtype=np.intp)
 
 
 def _chosen(

@@ -18,6 +18,7 @@ global configuration control, joint limit and singularity avoidance, Mech. Mach.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -37,7 +38,8 @@ class Triples:
     """The two triples of turns Rz(a) K Rz(b) L Rz(c), each number with the shoulder's first.
 
     K, L: (2, 3, 3); k, r, phi: (2,) zᵀ R z = k + r cos(b - phi) [rad]; u: (2, 3, 2) of x and y of K Rz(b) L z the
-    factors of 1, cos b and sin b; v: (2, 3, 2) the same of Lᵀ Rz(-b) Kᵀ z.
+    factors of 1, cos b and sin b; v: (2, 3, 2) the same of Lᵀ Rz(-b) Kᵀ z; levers: (3, 2, 2, 1, 1, 2, 1, 1) by factor,
+    by x and y, and by u and v; cos_phi, sin_phi: (2, 1, 1).
     """
 
     K: Array
@@ -47,6 +49,21 @@ class Triples:
     phi: Array
     u: Array
     v: Array
+
+    @cached_property
+    def levers(self) -> Array:
+        """The factors as columns take them."""
+        return np.stack([self.u, self.v], axis=1).transpose(2, 0, 1, 3)[:, :, :, None, None, :, None, None]
+
+    @cached_property
+    def cos_phi(self) -> Array:
+        """The cosines of phi."""
+        return np.cos(self.phi)[:, None, None]
+
+    @cached_property
+    def sin_phi(self) -> Array:
+        """The sines of phi."""
+        return np.sin(self.phi)[:, None, None]
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,18 +14,23 @@ only: ten numbers that are each A cos ψ + B sin ψ + C.
 Degenerate case. Of a straight elbow, which is a double root, there is one set of curves; ψ then counts from where the
 elbow bends. With W on axis 1 it counts from the base's x axis. With W in S there is no line, and where a middle turn
 comes to zero its neighbours turn about one axis: there, and next to it, `doubt` says so.
+Entry by entry: those of one pose are floats, those of many are columns. `native/swivel.c` has the same steps.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.swivel_arm import SwivelArm, Triples
 from robokin.inverse.verify import HALF_TURN
+from robokin.kernel.facts import fact
 from robokin.kernel.frames import frames
+from robokin.rotation_entries import Floats
 
 TURN = 2.0 * np.pi
 
@@ -56,6 +61,20 @@ S to W as a part of the size: joints are known to 1e-5 then, and to 1e-3 with wh
 
 SIGNS = np.array([1.0, -1.0])
 """Of the first and of the second value of an elbow or of a middle turn."""
+
+UP, AHEAD = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
+"""Axis 1, and the direction that ψ counts from where W is on it, in the base."""
+
+Vector = Any
+"""Three entries, floats or columns (m,)."""
+
+
+class OnePose(Floats):
+    """The functions of floats that the curves of one pose ask for, with the last digits that numpy gives many."""
+
+    arccos = staticmethod(lambda x: float(np.arccos(x)))
+    cos = staticmethod(lambda angle: float(np.cos(angle)))
+    sin = staticmethod(lambda angle: float(np.sin(angle)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,13 +110,14 @@ class SwivelCurves:
             self.bend[some],
         )
 
-    def turns(self, psi: Array) -> tuple[Array, Array]:
-        """The triples at ψ (m, 2, K): turns (m, 2, 2, 2, 3, K) by elbow, triple and sign of the middle one; its cosine.
+    def turns(self, psi: Array) -> Array:
+        """(3, m, 2, 2, 2, K) the triples at ψ (m, 2, K), by elbow, triple and sign of the middle turn.
 
-        [rad] in [-π, π], offsets included; the cosine (m, 2, 2, K) is beyond ±1 where there is no turn.
+        [rad] in [-π, π], offsets included.
         """
-        wave = np.stack([np.ones_like(psi), np.cos(psi), np.sin(psi)], axis=2)
-        return _turns(np.moveaxis(self.entries @ wave[:, :, None], 3, 0), self.arm.triples, SIGNS[:, None])
+        entries = self.entries.transpose(4, 3, 0, 1, 2)[..., None]
+        psi = psi[:, :, None]
+        return _turns(entries, psi, self.arm.triples, SIGNS[:, None])
 
     def configurations(self, row: Index, signs: Index, psi: Array) -> Array:
         """(s, 7) [rad] in [-π, π] the joint values at ψ (s,) of poses (s,).
@@ -105,15 +125,16 @@ class SwivelCurves:
         signs: (s, 3) by their places in `SIGNS`: of the elbow, the shoulder, the wrist.
         """
         elbow = signs[:, 0]
-        wave = np.stack([np.ones_like(psi), np.cos(psi), np.sin(psi)], axis=1)
-        g = np.einsum("stjk,sk->jts", self.entries[row, elbow], wave)
-        turns, _ = _turns(g, self.arm.triples, SIGNS[signs[:, 1:].T][:, None])
-        q = np.empty((len(psi), 7))
-        q[:, :3], q[:, 3], q[:, 4:] = turns[0, 0].T, self.q4[row, elbow], turns[1, 0].T
-        q -= self.arm.chain.offsets
-        q -= TURN * np.round(q / TURN)
-        q[q < HALF_TURN - np.pi] += TURN  # -180° is 180°, whatever the last digits say
-        return q
+        entries = self.entries[row, elbow].transpose(3, 2, 1, 0)[:, :, None, None]
+        turns = _turns(entries, psi, self.arm.triples, SIGNS[signs[:, 1:].T][:, None])[:, 0, 0, :, 0]
+        q = np.empty((7, len(psi)))
+        q[:3], q[3], q[4:] = turns[:, 0], self.q4[row, elbow], turns[:, 1]
+        q -= self.arm.chain.offsets[:, None]
+        q -= TURN * np.rint(q / TURN)
+        low = q < HALF_TURN - np.pi
+        if low.any():
+            q[low] += TURN  # -180° is 180°, whatever the last digits say
+        return q.T
 
     def swivel(self, row: Index, elbow: Index, q: Array) -> Array:
         """(s,) ψ [rad] in [-π, π] of configurations q (s, 7) or (7,) [rad] that reach poses (s,) with elbows (s,)."""
@@ -124,130 +145,193 @@ class SwivelCurves:
         return np.asarray(np.arctan2(seen[:, 2], seen[:, 1]))
 
 
+@dataclass(frozen=True)
+class PlainArm:
+    """What of an arm does not depend on a pose, as floats, in the order in which `native/swivel_forms.c` takes them.
+
+    Matrices are rows. seen: S as C3 has it; forearm, forearm_origin: C3; next: C4.
+    """
+
+    base: Any
+    origin: Vector
+    wrist: Vector
+    shoulder: Vector
+    hand: Any
+    seen: Vector
+    lower: Vector
+    forearm: Any
+    forearm_origin: Vector
+    next: Any
+    upper: Vector
+    elbow: Vector
+
+
+@fact
+def plain_arm(arm: SwivelArm) -> PlainArm:
+    """The numbers of an arm that its curves are made of."""
+    C = arm.chain.constants
+    seen = C[3][:3, :3].T @ (arm.upper - C[3][:3, 3])
+    numbers = [
+        C[0][:3, :3], C[0][:3, 3], arm.wrist, arm.shoulder, arm.hand, seen, arm.lower,
+        C[3][:3, :3], C[3][:3, 3], C[4][:3, :3], arm.upper, arm.elbow,
+    ]  # fmt: skip
+    return PlainArm(*(number.tolist() for number in numbers))
+
+
 def swivel_curves(arm: SwivelArm, T: Array) -> SwivelCurves:
     """The self-motions at poses T (m, 4, 4) [m]."""
-    constants = arm.chain.constants
-    base = constants[0]
-    p = (T[:, :3, :3] @ arm.wrist + T[:, :3, 3] - base[:3, 3]) @ base[:3, :3] - arm.shoulder
-    hand = base[:3, :3].T @ T[:, :3, :3] @ arm.hand
-    q4, real, straight, doubt = _elbows(arm, p)
-    v_axes, unnamed = _upper_axes(arm, q4)
-    p_axes, no_line = _base_axes(p, arm.size)
-    doubt |= no_line | np.any(unnamed & real, axis=1)
-    doubt |= straight & (np.linalg.norm(p, axis=1) < FIRM * arm.size)
-    # The forearm's frame before its turn sees ê, f̂, v̂; the base sees the hand's columns along r̂, n̂, p̂.
-    Rz = _about_z(q4)
-    forearm = constants[3][:3, :3] @ Rz @ constants[4][:3, :3]
-    seen = np.swapaxes(forearm, -1, -2) @ v_axes  # (m, 2, 3, 3) columns v̂, ê, f̂
-    along = np.swapaxes(p_axes, -1, -2) @ hand  # (m, 3, 3) rows p̂, r̂, n̂
-    m = len(T)
-    entries = np.empty((m, 2, 2, 5, 3))
-    entries[:, :, 0, :3] = _swung(p_axes[:, None], v_axes[:, :, 2])
-    entries[:, :, 0, 3:] = _swung(v_axes, p_axes[:, None, 2], -1.0)[..., :2, :]
-    entries[:, :, 1, :3] = _swung(seen, along[:, None, :, 2], -1.0)
-    entries[:, :, 1, 3:] = _swung(np.swapaxes(along, 1, 2)[:, None], seen[:, :, 2])[..., :2, :]
-    straightest = np.where(straight, 1.0 - np.sqrt(1.0 - FIRM**2), ALIGNED)
-    doubt |= np.any((_alignment(arm, entries) < straightest[:, None]) & real, axis=1)
-    return SwivelCurves(arm, q4, real, entries, doubt, straight, p_axes, v_axes[..., 1])
+    m, a, size = len(T), plain_arm(arm), arm.size
+    maths: Any = OnePose if m == 1 else np
+    t: Any = T.reshape(16).tolist() if m == 1 else T.reshape(m, 16).T
+    R = (t[0:3], t[4:7], t[8:11])
+    turned = _times(R, a.wrist)
+    p = _backwards(a.base, [turned[r] + t[4 * r + 3] - a.origin[r] for r in range(3)])
+    p = [p[r] - a.shoulder[r] for r in range(3)]
+    hand = [_backwards(a.base, _times(R, column)) for column in zip(*a.hand, strict=True)]
+    square = _dot(p, p)
+    length, off = maths.sqrt(square), maths.hypot(p[0], p[1])
+    q4, real, straight, doubt = _elbows(a, square, maths)
+    doubt = doubt | (straight & (length < FIRM * size)) | (length < NO_LINE * size)
+    # The base's axes.
+    beside = off >= ON_LINE * length
+    doubt = doubt | (beside & (off < OFF_LINE * length))
+    p_axes, _ = _axes(p, [maths.where(beside, *pair) for pair in zip(UP, AHEAD, strict=True)], maths)
+    along = [[_dot(axis, column) for column in hand] for axis in p_axes]
+    straightest = maths.where(straight, 1.0 - math.sqrt(1.0 - FIRM**2), ALIGNED)
+    numbers: list[Any] = []
+    bends: list[Any] = []
+    for e in range(2):
+        triples, bend, far = _triples_at(a, size, q4[e], p_axes, along, maths)
+        doubt = doubt | (real[e] & (far >= ON_LINE * size) & (far < OFF_LINE * size))
+        for entry, k, r in zip(triples, arm.triples.k.tolist(), arm.triples.r.tolist(), strict=True):
+            swing, middle = maths.hypot(entry[7], entry[8]), entry[6] - k
+            nearest = maths.minimum(r - (middle + swing), r + (middle - swing)) / r
+            doubt = doubt | (real[e] & (nearest < straightest))
+            numbers += entry
+        bends += bend
+    table = np.array([*numbers, *q4, *bends, *(axis[r] for r in range(3) for axis in p_axes)]).reshape(-1, m)
+    table = np.ascontiguousarray(table.T)
+    entries, values, bend, axes = table[:, :60], table[:, 60:62], table[:, 62:68], table[:, 68:]
+    flags = np.array([*real, straight, doubt]).reshape(4, m)
+    shaped = entries.reshape(m, 2, 2, 5, 3), flags[3], flags[2], axes.reshape(m, 3, 3), bend.reshape(m, 2, 3)
+    return SwivelCurves(arm, values, flags[:2].T, *shaped)
 
 
-def _elbows(arm: SwivelArm, p: Array) -> tuple[Array, Flags, Flags, Flags]:
-    """The values (m, 2) of joint 4, offset included, that W - S = p (m, 3) allows; whether there are; whether they are
-    taken for one (m,); and doubt (m,).
+def _elbows(a: PlainArm, square: Any, maths: Any) -> tuple[list[Any], list[Any], Any, Any]:
+    """The two values of joint 4, offset included, that |W - S|² allows; whether there are; whether they are taken for
+    one; and doubt.
 
     |W - S|² = |w|² + |s|² - 2 sᵀ Rz(q4) w, with W and S seen from both sides of the joint.
     """
-    C = arm.chain.constants[3]
-    s, w = C[:3, :3].T @ (arm.upper - C[:3, 3]), arm.lower
+    s, w = a.seen, a.lower
     cosine, sine = s[0] * w[0] + s[1] * w[1], s[1] * w[0] - s[0] * w[1]
-    wave = (0.5 * (s @ s + w @ w - np.einsum("mi,mi->m", p, p)) - s[2] * w[2]) / np.hypot(cosine, sine)
-    beyond = np.abs(wave) - 1.0
-    straight = np.abs(beyond) <= STRAIGHT
-    x = np.clip(np.where(straight, np.round(wave), wave), -1.0, 1.0)
-    q4 = np.arctan2(sine, cosine) + np.arccos(x)[:, None] * SIGNS
-    real = np.stack([straight | (beyond < 0.0), ~straight & (beyond < 0.0)], axis=1)
-    return q4, real, straight, ~straight & (np.abs(beyond) < BENT)
+    wave = (0.5 * (_dot(s, s) + _dot(w, w) - square) - s[2] * w[2]) / Floats.hypot(cosine, sine)
+    past = abs(wave) - 1.0
+    straight, bent = abs(past) <= STRAIGHT, abs(past) > STRAIGHT
+    amid = math.atan2(sine, cosine)
+    side = maths.arccos(maths.maximum(-1.0, maths.minimum(maths.where(straight, maths.rint(wave), wave), 1.0)))
+    real = [straight | (past < 0.0), bent & (past < 0.0)]
+    return [amid + side, amid - side], real, straight, bent & (abs(past) < BENT)
 
 
-def _upper_axes(arm: SwivelArm, q4: Array) -> tuple[Array, Flags]:
-    """The directions v̂, ê, f̂ as columns (m, 2, 3, 3) in the frame after joint 3; and (m, 2) where the elbow is next to
-    the line, but not on it."""
-    C = arm.chain.constants[3]
-    v = (_about_z(q4) @ arm.lower) @ C[:3, :3].T + C[:3, 3] - arm.upper
-    towards = np.broadcast_to(arm.elbow, v.shape)
-    axes, off = _axes(v, towards)
-    on_line = off < ON_LINE * arm.size
-    if on_line.any():
-        axes, _ = _axes(v, np.where(on_line[..., None], np.cross(C[:3, 2], v), towards))
-    return axes, ~on_line & (off < OFF_LINE * arm.size)
+def _triples_at(
+    a: PlainArm, size: float, q4: Any, p_axes: list[Vector], along: list[Vector], maths: Any
+) -> tuple[tuple[list[Any], list[Any]], Vector, Any]:
+    """The factors of both triples at an elbow q4, offset included, one after the other; ê; how far the elbow is off the
+    line.
 
-
-def _base_axes(p: Array, size: float) -> tuple[Array, Flags]:
-    """The directions p̂, r̂, n̂ as columns (m, 3, 3) in the base, r̂ towards axis 1; where W is next to S, or to
-    axis 1 but not on it."""
-    length = np.linalg.norm(p, axis=1)
-    off = np.hypot(p[:, 0], p[:, 1])
-    beside = off >= ON_LINE * length
-    axes, _ = _axes(p, np.where(beside[:, None], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]))
-    return axes, (length < NO_LINE * size) | (beside & (off < OFF_LINE * length))
-
-
-def _axes(line: Array, towards: Array) -> tuple[Array, Array]:
-    """Orthonormal directions (..., 3, 3) as columns, along the line, at right angles to that towards something, across;
-    and (...) how far that is from the line."""
-    first = line / np.maximum(np.linalg.norm(line, axis=-1, keepdims=True), 1e-300)
-    second = towards - np.sum(towards * first, axis=-1, keepdims=True) * first
-    second -= np.sum(second * first, axis=-1, keepdims=True) * first  # what rounding left, of a nearly straight elbow
-    length = np.linalg.norm(second, axis=-1, keepdims=True)
-    second = second / np.maximum(length, 1e-300)
-    return np.stack([first, second, np.cross(first, second)], axis=-1), length[..., 0]
-
-
-def _swung(axes: Array, other: Array, sign: float = 1.0) -> Array:
-    """The factors (..., 3, 3) of 1, cos ψ and sin ψ in R(±ψ) x: axes are what its own come to, `other` is x in these.
-
-    axes: (..., 3, 3) as columns; other: (..., 3).
+    p_axes: p̂, r̂, n̂ in the base; along: the hand's columns along each of these.
     """
-    still = axes[..., 0] * other[..., None, 0]
-    cosine = axes[..., 1] * other[..., None, 1] + axes[..., 2] * other[..., None, 2]
-    sine = sign * (axes[..., 2] * other[..., None, 1] - axes[..., 1] * other[..., None, 2])
-    return np.stack([still, cosine, sine], axis=-1)
+    c4, s4, w = maths.cos(q4), maths.sin(q4), a.lower
+    v = _times(a.forearm, [c4 * w[0] - s4 * w[1], s4 * w[0] + c4 * w[1], w[2]])
+    v = [v[r] + a.forearm_origin[r] - a.upper[r] for r in range(3)]
+    v_axes, far = _axes(v, a.elbow, maths)
+    on_line = far < ON_LINE * size
+    if np.any(on_line):
+        across = _cross([row[2] for row in a.forearm], v)
+        towards = [maths.where(on_line, *pair) for pair in zip(across, a.elbow, strict=True)]
+        v_axes, _ = _axes(v, towards, maths)
+    # The forearm's frame sees v̂, ê, f̂: backwards through C3, Rz(q4), C4.
+    seen = []
+    for column in v_axes:
+        x = _backwards(a.forearm, column)
+        seen.append(_backwards(a.next, [c4 * x[0] + s4 * x[1], c4 * x[1] - s4 * x[0], x[2]]))
+    last = [row[2] for row in along]
+    shoulder = _swung(p_axes, [axis[2] for axis in v_axes], 1.0, 3)
+    shoulder += _swung(v_axes, [axis[2] for axis in p_axes], -1.0, 2)
+    wrist = _swung(seen, last, -1.0, 3)
+    wrist += _swung(along, [axis[2] for axis in seen], 1.0, 2)
+    return (shoulder, wrist), v_axes[1], far
 
 
-def _alignment(arm: SwivelArm, entries: Array) -> Array:
-    """(m, 2) how near the cosine of a middle turn comes to ±1 at some ψ; negative where it is beyond."""
-    triples = arm.triples
-    swing = np.hypot(entries[..., 2, 1], entries[..., 2, 2])
-    middle = entries[..., 2, 0] - triples.k
-    least = np.minimum(triples.r - (middle + swing), triples.r + (middle - swing)) / triples.r
-    return np.asarray(np.min(least, axis=2))
+def _dot(a: Vector, b: Vector) -> Any:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def _about_z(angle: Array) -> Array:
-    """Rz (..., 3, 3) of angles (...) [rad]."""
-    R = np.zeros((*angle.shape, 3, 3))
-    R[..., 0, 0] = R[..., 1, 1] = np.cos(angle)
-    R[..., 1, 0] = np.sin(angle)
-    R[..., 0, 1], R[..., 2, 2] = -R[..., 1, 0], 1.0
-    return R
+def _cross(a: Vector, b: Vector) -> Vector:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
-def _turns(g: Array, triples: Triples, signs: Array) -> tuple[Array, Array]:
-    """Turns (..., 2, c, 3, K) of triples for entries g (5, ..., 2, K), and the cosines of the middle ones.
+def _times(A: Any, x: Vector) -> Vector:
+    """A x of a matrix as rows."""
+    return [_dot(row, x) for row in A]
 
-    signs: (c, 1) or (2, 1, K) of the middle turns' sines.
+
+def _backwards(A: Any, x: Vector) -> Vector:
+    """Aᵀ x of a matrix as rows."""
+    return [A[0][c] * x[0] + A[1][c] * x[1] + A[2][c] * x[2] for c in range(3)]
+
+
+def _axes(line: Vector, towards: Vector, maths: Any) -> tuple[list[Vector], Any]:
+    """Orthonormal directions along the line, at right angles to it towards something, across; and how far that is from
+    the line."""
+    length = maths.maximum(maths.sqrt(_dot(line, line)), 1e-300)
+    first = [entry / length for entry in line]
+    along = _dot(towards, first)
+    second = [towards[r] - along * first[r] for r in range(3)]
+    along = _dot(second, first)  # what rounding left, of a nearly straight elbow
+    second = [second[r] - along * first[r] for r in range(3)]
+    off = maths.sqrt(_dot(second, second))
+    length = maths.maximum(off, 1e-300)
+    second = [entry / length for entry in second]
+    return [first, second, _cross(first, second)], off
+
+
+def _swung(axes: list[Vector], other: Vector, sign: float, rows: int) -> list[Any]:
+    """The factors of 1, cos ψ and sin ψ in the first rows of R(±ψ) x, one row after the other.
+
+    axes: what its own come to; other: x in these.
     """
+    out = []
+    for r in range(rows):
+        out.append(axes[0][r] * other[0])
+        out.append(axes[1][r] * other[1] + axes[2][r] * other[2])
+        out.append(sign * (axes[2][r] * other[1] - axes[1][r] * other[2]))
+    return out
+
+
+def _turns(entries: Array, psi: Array, triples: Triples, signs: Array) -> Array:
+    """Turns (3, ..., 2, c, K) of triples at ψ (..., 1, K) or (K,).
+
+    entries: (3, 5, M, E, 2, K or 1) the factors of 1, cos ψ and sin ψ; signs: (c, 1) or (2, 1, K) of the middle turns'
+    sines.
+    """
+    g = entries[1] * np.cos(psi)
+    g += entries[0]
+    g += entries[2] * np.sin(psi)
     cosine = (g[2] - triples.k[:, None]) / triples.r[:, None]
-    x = np.clip(cosine, -1.0, 1.0)[..., None, :]
+    x = np.maximum(np.minimum(cosine, 1.0), -1.0)[..., None, :]
     y = np.sqrt((1.0 - x) * (1.0 + x)) * signs
-    cp, sp = np.cos(triples.phi)[:, None, None], np.sin(triples.phi)[:, None, None]
-    cb, sb = x * cp - y * sp, y * cp + x * sp
-    u, v = triples.u[..., None, None], triples.v[..., None, None]
-    u0, u1 = (part[0] + part[1] * cb + part[2] * sb for part in u)
-    v0, v1 = (part[0] + part[1] * cb + part[2] * sb for part in v)
-    g13, g23, _, g31, g32 = g[..., None, :]
-    turns = np.empty((*sb.shape[:-1], 3, sb.shape[-1]))
-    np.arctan2(g23 * u0 - g13 * u1, g13 * u0 + g23 * u1, out=turns[..., 0, :])
-    np.arctan2(sb, cb, out=turns[..., 1, :])
-    np.arctan2(v1 * g31 - v0 * g32, v0 * g31 + v1 * g32, out=turns[..., 2, :])
-    return turns, cosine
+    Y, X = np.empty((2, 3, *y.shape))
+    np.subtract(x * triples.cos_phi, y * triples.sin_phi, out=X[1])
+    np.add(y * triples.cos_phi, x * triples.sin_phi, out=Y[1])
+    still, cosines, sines = triples.levers
+    levers = cosines * X[1]
+    levers += still
+    levers += sines * Y[1]
+    G, H = g[0::3, ..., None, :], g[1::3, ..., None, :]
+    np.add(G * levers[0], H * levers[1], out=X[0::2])
+    up, down = H * levers[0], G * levers[1]
+    np.subtract(up[0], down[0], out=Y[0])
+    np.subtract(down[1], up[1], out=Y[2])
+    return np.asarray(np.arctan2(Y, X))

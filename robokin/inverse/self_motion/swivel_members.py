@@ -81,7 +81,7 @@ def swivel_answers(
         for generation, count in enumerate(COUNTS):
             if generation and wanted <= COUNTS[generation - 1] // 2:
                 break
-            of, psi = _spread(some, count)
+            of, psi = placed(some, count)
             rows.append(some.row[of])
             q.append(curves.configurations(some.row[of], some.signs[of], psi))
             since.append(np.full(len(of), generation))
@@ -103,7 +103,7 @@ def _proven(arm: SwivelArm, T: Array, row: Index, q: Array, generation: Index) -
     return Found(row, q, position, angle).pick(closes), generation[closes]
 
 
-def _spread(pieces: SwivelPieces, count: int) -> tuple[Index, Array]:
+def placed(pieces: SwivelPieces, count: int) -> tuple[Index, Array]:
     """Some `count` places for each pose at equal distances on its pieces, one at least on each: which piece, ψ."""
     length = pieces.last - pieces.first
     total = np.bincount(pieces.row, length, minlength=1)[pieces.row]

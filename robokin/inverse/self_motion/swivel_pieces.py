@@ -46,8 +46,11 @@ VAGUEST = 1e-3
 MEETS = 1e-8
 """How near to its limits [rad] a joint meets these that has them a full turn apart."""
 
-WEIGHTS = np.array([8, 4, 2, 1])
-"""What makes a pose and three signs one number."""
+CURVES = 8
+"""Curves of a pose, by the signs of elbow, shoulder and wrist."""
+
+CODES = np.array([[code >> 2, code >> 1 & 1, code & 1] for code in range(CURVES)])
+"""The places of a curve's signs of elbow, shoulder and wrist, by its number."""
 
 SURE = 0.5 * LIMIT_TOLERANCE
 """A joint [rad] that is beyond its limit by less is within it, whatever rounding did."""
@@ -60,40 +63,40 @@ AT_ONCE = 256
 class SwivelPieces:
     """Intervals of ψ within the limits, by pose and by signs.
 
-    row: (p,) the poses; signs: (p, 3) of elbow, shoulder and wrist by their places in `SIGNS`; first, last: (p,) [rad],
-    last up to a turn more than first, which is in [-π, π]; whole: (p,) where all of a closed curve is within the
-    limits; doubt: (m,) the poses of which it is not certain that these are all.
+    row: (p,) the poses; code: (p,) the curves, by their places in `CODES`; first, last: (p,) [rad], last up to a turn
+    more than first, which is in [-π, π]; whole: (p,) where all of a closed curve is within the limits; doubt: (m,) the
+    poses of which it is not certain that these are all.
     """
 
     row: Index
-    signs: Index
+    code: Index
     first: Array
     last: Array
     whole: Flags
     doubt: Flags
 
+    @property
+    def signs(self) -> Index:
+        """(p, 3) of elbow, shoulder and wrist, by their places in `SIGNS`."""
+        return CODES[self.code]
+
     def of(self, rows: Flags) -> SwivelPieces:
         """The pieces of some poses (m,)."""
         some = rows[self.row]
-        row, signs, whole = self.row[some], self.signs[some], self.whole[some]
-        return SwivelPieces(row, signs, self.first[some], self.last[some], whole, self.doubt)
+        row, code, whole = self.row[some], self.code[some], self.whole[some]
+        return SwivelPieces(row, code, self.first[some], self.last[some], whole, self.doubt)
 
 
 def swivel_pieces(curves: SwivelCurves, limits: Array) -> SwivelPieces:
     """The pieces within limits (7, 2) [rad]."""
     bounds = _bounds(curves.arm, np.asarray(limits, dtype=np.float64).tobytes())
-    parts: list[SwivelPieces] = []
-    for start in range(0, len(curves.q4), AT_ONCE):
-        parts.append(_pieces(curves.of(slice(start, start + AT_ONCE)), bounds))
-    if len(parts) == 1:
-        return parts[0]
-    empty = _pieces(curves.of(slice(0, 0)), bounds)
-    row = np.concatenate([empty.row, *(part.row + k * AT_ONCE for k, part in enumerate(parts))])
-    signs, first, last, whole, doubt = (
-        np.concatenate([getattr(part, name) for part in (empty, *parts)])
-        for name in ("signs", "first", "last", "whole", "doubt")
-    )
-    return SwivelPieces(row, signs, first, last, whole, doubt)
+    if len(curves.q4) <= AT_ONCE:
+        return _pieces(curves, bounds)
+    starts = range(0, len(curves.q4), AT_ONCE)
+    parts = [_pieces(curves.of(slice(start, start + AT_ONCE)), bounds) for start in starts]
+    row = np.concatenate([part.row + start for part, start in zip(parts, starts, strict=True)])
+    names = ("code", "first", "last", "whole", "doubt")
+    return SwivelPieces(row, *(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 @fact
@@ -105,9 +108,9 @@ def _bounds(arm: SwivelArm, limits: bytes) -> SwivelBounds:
 class SwivelBounds:
     """Limits of an arm as equations.
 
-    matrix: (E, 10), value: (E,) of equations in the ten entries of the triples; middle, half: (2, 3, 1) of the triples'
-    turns and (2,) of the elbow [rad], offsets included; half is infinite where limits keep no angle out; stops:
-    (2, 3, 1) which joints have limits a full turn apart.
+    matrix: (E, 10), value: (E,) of equations in the ten entries of the triples; middle, half: (3, 1, 1, 2, 1, 1) of the
+    triples' turns and (2,) of the elbow [rad], offsets included; half is infinite where limits keep no angle out;
+    stops: the same, which joints have limits a full turn apart; stopping: whether some have.
     """
 
     def __init__(self, arm: SwivelArm, limits: Array) -> None:
@@ -117,8 +120,10 @@ class SwivelBounds:
         stops = bounded & (high - low >= TURN - LIMIT_TOLERANCE)
         middle = np.where(bounded, 0.5 * (np.where(bounded, low, 0.0) + np.where(bounded, high, 0.0)), 0.0)
         half = np.where(bounded & ~stops, 0.5 * (high - low), np.inf)
-        self.stops = stops[TRIPLES][:, :, None]
-        self.middle, self.half = middle[TRIPLES][:, :, None], half[TRIPLES][:, :, None]
+        self.stopping = bool(stops[TRIPLES].any())
+        self.middle, self.half, self.stops = (
+            number[TRIPLES].T[:, None, None, :, None, None] for number in (middle, half, stops)
+        )
         self.elbow = float(middle[3]), float(half[3])
         rows, values = [], []
         for t, joints in enumerate(TRIPLES):
@@ -147,46 +152,61 @@ def _meeting_limit(arm: SwivelArm, t: int, place: int, end: float) -> tuple[Arra
 
 def _pieces(curves: SwivelCurves, bounds: SwivelBounds) -> SwivelPieces:
     """The pieces of some poses, few enough for one table."""
-    vague = np.where(curves.straight, VAGUEST, VAGUE)
+    m, vague = len(curves.q4), np.where(curves.straight, VAGUEST, VAGUE)
+    least = -vague[:, None]
     psi, touched = _meetings(curves, bounds, vague)
-    gap = np.diff(psi, axis=2, append=psi[:, :, :1] + TURN)
-    margin, stopped = _margins(curves, bounds, np.concatenate([psi, psi + 0.5 * gap], axis=2))
-    at, amid = np.split(margin, 2, axis=-1)
-    middle, half = bounds.elbow
-    away = curves.q4 - middle
-    room = np.where(curves.real, half - np.abs(away - TURN * np.round(away / TURN)), -np.inf)
-    elbow = room >= -SURE
-    within = (amid >= -SURE) & elbow[:, :, None, None, None]
+    gap = np.empty(psi.shape)
+    np.subtract(psi[..., 1:], psi[..., :-1], out=gap[..., :-1])
+    gap[..., -1] = psi[..., 0] + TURN - psi[..., -1]
     # What is too short to have an inside is as its neighbour is.
-    place, short = np.arange(psi.shape[2]), gap < ALIKE
-    place = np.maximum.accumulate(np.where(short, -1, place), axis=2)
-    place = np.where(place < 0, place[:, :, -1:], place)
-    within = np.take_along_axis(within, place[:, :, None, None], axis=4)
-    before = np.roll(within, 1, axis=4)
-    begins, ends = within & ~before, before & ~within
-    all_round: Flags = np.all(within, axis=4)
-    doubt = curves.doubt | np.any(touched & elbow, axis=1) | np.any((room < -SURE) & (room > -vague[:, None]), axis=1)
-    apart, there = ~short[:, :, None, None], elbow[:, :, None, None, None]
+    short = gap < ALIKE
+    amid = _neighbours(psi + 0.5 * gap, short)
+    margin, stopped = _margins(curves, bounds, np.concatenate([psi, amid], axis=2))
+    away = curves.q4 - bounds.elbow[0]
+    room = np.where(curves.real, bounds.elbow[1] - np.abs(away - TURN * np.rint(away / TURN)), -np.inf)
+    elbow = room >= -SURE
+    doubt = curves.doubt | np.logical_or.reduce((touched & elbow) | ((room < -SURE) & (room > least)), axis=1)
+    if not elbow.all():
+        margin[~elbow] = -np.inf
+    least = least[:, None, None, None]
+    at, amid = margin[..., : psi.shape[2]], margin[..., psi.shape[2] :]
+    within = amid >= -SURE
+    before = np.empty(within.shape, dtype=bool)
+    before[..., 1:], before[..., 0] = within[..., :-1], within[..., -1]
+    begins, ends = within > before, before > within
+    all_round: Flags = np.logical_and.reduce(within, axis=4)
+    apart = ~short[:, :, None, None]
     if stopped is not None:
         stop = stopped & within & before & apart
         begins, ends = begins | stop, ends | stop
-        all_round &= ~stop.any(axis=4)
-    least = -vague[:, None, None, None, None]
-    doubt |= np.any((amid < -SURE) & (amid > least) & apart & there, axis=(1, 2, 3, 4))
+        all_round &= ~np.logical_or.reduce(stop, axis=4)
     # On a limit is within it, also in a single point; a little beyond may be rounding.
-    alike = (within == before) & apart & there & (at >= least)
-    doubt |= np.any(alike & (at < -SURE), axis=(1, 2, 3, 4))
-    points = np.argwhere(alike & ~within & (at >= -SURE))
-    row, signs, first, last, whole = _runs(psi, begins, ends, all_round, points)
+    alike = (within == before) & apart & (at >= least)
+    vaguely = (amid > least) > within
+    vaguely |= alike & (at < -SURE)
+    doubt |= np.logical_or.reduce(vaguely.reshape(m, -1), axis=1)
+    points = np.flatnonzero((alike & (at >= -SURE)) > within)
+    curve, first, last, whole = _runs(psi, np.flatnonzero(begins), np.flatnonzero(ends), all_round.reshape(-1), points)
+    row = curve // CURVES
     # Where a joint stops the next piece begins where one ends; any other gap this short may be rounding.
-    length, gaps = last - first, first[1:] - last[:-1]
+    length, gaps, bound = last - first, first[1:] - last[:-1], vague[row]
     left_out = TURN - length
     # Of a straight elbow no single point is certain.
-    short_piece = (length < vague[row]) & ((length > 0.0) | curves.straight[row])
-    doubt[row[short_piece | (~whole & (left_out < vague[row]) & (left_out > ALIKE))]] = True
-    same = (np.diff(row) == 0) & np.all(np.diff(signs, axis=0) == 0, axis=1)
-    doubt[row[1:][same & (gaps < vague[row[1:]]) & (gaps != 0.0)]] = True
-    return SwivelPieces(row, signs, first, last, whole, doubt)
+    short_piece = (length < bound) & ((length > 0.0) | curves.straight[row])
+    short_piece |= (left_out < bound) & (left_out > ALIKE) & ~whole
+    short_piece[1:] |= (curve[1:] == curve[:-1]) & (gaps < bound[1:]) & (gaps != 0.0)
+    if short_piece.any():
+        doubt[row[short_piece]] = True
+    return SwivelPieces(row, curve % CURVES, first, last, whole, doubt)
+
+
+def _neighbours(amid: Array, short: Flags) -> Array:
+    """Midway places (m, 2, K) with those of intervals that are too short replaced by those of the intervals before."""
+    place = np.where(short, -1, np.arange(amid.shape[2]))
+    np.maximum.accumulate(place, axis=2, out=place)
+    place = np.where(place < 0, place[:, :, -1:], place).reshape(-1, amid.shape[2])
+    place += np.arange(0, amid.size, amid.shape[2])[:, None]
+    return amid.reshape(-1)[place].reshape(amid.shape)
 
 
 def _meetings(curves: SwivelCurves, bounds: SwivelBounds, vague: Array) -> tuple[Array, Flags]:
@@ -197,18 +217,21 @@ def _meetings(curves: SwivelCurves, bounds: SwivelBounds, vague: Array) -> tuple
     m, many = len(curves.q4), len(bounds.value)
     if not many:
         return np.full((m, 2, 1), -np.pi), np.zeros((m, 2), dtype=bool)
-    still, cosine, sine = np.moveaxis(bounds.matrix @ curves.entries.reshape(m, 2, 10, 3), 3, 0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        swing, off = np.hypot(cosine, sine), bounds.value - still
-        x = off / swing
-        exists = np.abs(x) <= 1.0 + TOUCHES
-        side = np.arccos(np.clip(x, -1.0, 1.0))
+    still, cosine, sine = (bounds.matrix @ curves.entries.reshape(m, 2, 10, 3)).transpose(3, 0, 1, 2)
+    swing, off = np.hypot(cosine, sine), bounds.value - still
+    # Where nothing swings, no place meets a limit.
+    x = off / np.maximum(swing, 1e-300)
+    side = np.arccos(np.minimum(np.maximum(x, -1.0), 1.0))
     amid = np.arctan2(sine, cosine)
-    psi = np.concatenate([amid - side, amid + side], axis=2)
-    psi -= TURN * np.round(psi / TURN)
-    psi = np.where(np.concatenate([exists, exists], axis=2), psi, -np.pi)
+    psi = np.empty((m, 2, 2 * many))
+    np.subtract(amid, side, out=psi[..., :many])
+    np.add(amid, side, out=psi[..., many:])
+    psi -= TURN * np.rint(psi / TURN)
+    missing = np.abs(x) > 1.0 + TOUCHES
+    psi[..., :many][missing] = psi[..., many:][missing] = -np.pi
     psi.sort(axis=2)
-    return psi, np.any(np.abs(np.abs(off) - swing) < vague[:, None, None], axis=2)
+    touches = np.abs(np.abs(off) - swing) < vague[:, None, None]
+    return psi, np.logical_or.reduce(touches, axis=2)
 
 
 def _margins(curves: SwivelCurves, bounds: SwivelBounds, psi: Array) -> tuple[Array, Flags | None]:
@@ -217,45 +240,42 @@ def _margins(curves: SwivelCurves, bounds: SwivelBounds, psi: Array) -> tuple[Ar
     With the flags (m, 2, 2, 2, K / 2) whether at the first half of ψ a joint with limits a full turn apart meets these;
     None for an arm without such a joint.
     """
-    turns, _ = curves.turns(psi)
-    turns -= bounds.middle[:, None]
-    turns -= TURN * np.round(turns / TURN)
+    turns = curves.turns(psi)
+    turns -= bounds.middle
+    turns -= TURN * np.rint(turns / TURN)
     away = np.abs(turns, out=turns)
-    margin = np.min(bounds.half[:, None] - away, axis=-2)
+    margin = np.minimum.reduce(bounds.half - away, axis=0)
     margin = np.minimum(margin[:, :, 0, :, None], margin[:, :, 1, None])
-    if not bounds.stops.any():
+    if not bounds.stopping:
         return margin, None
-    meets = np.any((away[..., : psi.shape[2] // 2] >= np.pi - MEETS) & bounds.stops[:, None], axis=-2)
+    meets = np.logical_or.reduce((away[..., : psi.shape[2] // 2] >= np.pi - MEETS) & bounds.stops, axis=0)
     return margin, meets[:, :, 0, :, None] | meets[:, :, 1, None]
 
 
-def _runs(
-    psi: Array, opening: Flags, closing: Flags, all_round: Flags, points: Index
-) -> tuple[Index, Index, Array, Array, Flags]:
-    """Runs of intervals within the limits: poses, signs, first and last ψ, whether they are all of a curve.
+def _runs(psi: Array, begins: Index, ends: Index, all_round: Flags, points: Index) -> tuple[Index, Array, Array, Flags]:
+    """Runs of intervals within the limits: curves, first and last ψ, whether they are all of a curve.
 
-    psi: (m, 2, K) where intervals begin; opening, closing: (m, 2, 2, 2, K) whether a run begins there, and whether one
-    ends; all_round: (m, 2, 2, 2) the curves that are within the limits everywhere; points: (c, 5) the places of those
-    that are in a single point.
+    psi: (m, 2, K) where intervals begin; begins, ends: places in (m, 2, 2, 2, K) where runs begin, and where they end;
+    all_round: (8 m,) the curves that are within the limits everywhere; points: places of those in a single point.
     """
-    begins, ends = np.argwhere(opening), np.argwhere(closing)
-    curve = begins[:, :4] @ WEIGHTS
-    opens = np.searchsorted(curve, curve)
-    counts = np.searchsorted(curve, curve, side="right") - opens
+    K, places = psi.shape[2], psi.reshape(-1)
+    curve = begins // K
+    opens = curve.searchsorted(curve)
+    counts = curve.searchsorted(curve, side="right") - opens
     # A run that goes on beyond π ends where the first end of its curve is.
-    later = ends[opens, 4] <= begins[opens, 4]
-    place = opens + (np.arange(len(begins)) - opens + later) % counts
-    row, elbow = begins[:, 0], begins[:, 1]
-    first, last = psi[row, elbow, begins[:, 4]], psi[row, elbow, ends[place, 4]]
-    last = np.where(last <= first, last + TURN, last)
-    found, rounds = begins[:, :4], np.argwhere(all_round)
-    whole = np.zeros(len(found), dtype=bool)
+    later = ends[opens] <= begins[opens]
+    closes = ends[opens + (np.arange(len(begins)) - opens + later) % counts]
+    elbow = (curve // 4 - curve) * K
+    first, last = places[begins + elbow], places[closes + elbow]
+    last[last <= first] += TURN
+    whole = np.zeros(len(curve), dtype=bool)
+    rounds = np.flatnonzero(all_round)
     if len(rounds) or len(points):
-        alone = psi[points[:, 0], points[:, 1], points[:, 4]]
-        turn = np.full(len(rounds), np.pi)
-        found = np.concatenate([found, rounds, points[:, :4]])
+        own = points // K
+        alone, turn = places[points + (own // 4 - own) * K], np.full(len(rounds), np.pi)
+        curve = np.concatenate([curve, rounds, own])
         first, last = np.concatenate([first, -turn, alone]), np.concatenate([last, turn, alone])
-        whole = np.concatenate([whole, turn > 0.0, np.zeros(len(points), dtype=bool)])
-        order = np.lexsort((first, found @ WEIGHTS))
-        found, first, last, whole = found[order], first[order], last[order], whole[order]
-    return found[:, 0], found[:, 1:], first, last, whole
+        whole = np.concatenate([whole, turn > 0.0, np.zeros(len(own), dtype=bool)])
+        order = np.lexsort((first, curve))
+        curve, first, last, whole = curve[order], first[order], last[order], whole[order]
+    return curve, first, last, whole

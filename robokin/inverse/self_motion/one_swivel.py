@@ -1,0 +1,150 @@
+"""One pose of an arm with a spherical shoulder and wrist, without blocks: what `native/swivel.c` gives, in Python.
+
+Statement. Give the pieces of a pose's self-motions within the joint limits and the solutions that are listed of them.
+Derivation. The steps are those of a block (`swivel_pieces`, `swivel_members`, `spread`) for a table of one pose; the
+configurations are proven by forward kinematics, here by products with the chain's constants, joint after joint: of some
+tens of them numpy's share of a call is more than the work.
+Degenerate case. Where a step doubts, or nothing is within the limits, nothing is given.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robokin.arrays import Array, Index
+from robokin.inverse.self_motion.spread import spread_of_one
+from robokin.inverse.self_motion.swivel_arm import SwivelArm
+from robokin.inverse.self_motion.swivel_curves import TURN, SwivelCurves, swivel_curves
+from robokin.inverse.self_motion.swivel_members import COUNTS, placed
+from robokin.inverse.self_motion.swivel_pieces import CODES, CURVES, swivel_pieces
+from robokin.inverse.verify import CLOSES, within_limits
+from robokin.kernel.chain import Chain
+from robokin.kernel.facts import fact
+from robokin.model.robot import tolerated
+
+STILL = 1e-9
+"""A joint [rad] that moves by less along a curve stands still."""
+
+LOOKS = np.linspace(-np.pi, np.pi, 13)[:-1]
+"""Values of ψ at which it is seen which joints move."""
+
+FIRST_LOOKS, SECOND_LOOKS = np.full((CURVES, 2), LOOKS[:2]).T
+"""The first two for every curve, after which mostly all joints are seen to move."""
+
+ALL_BUT_THE_ELBOW = 127 - 8
+"""The joints that may move, as bits."""
+
+BITS = 1 << np.arange(7)
+
+Answer = tuple[Array, Array, list[int], int, int]
+"""Rows of solutions (k, 10): joint values, position, angle, curve; pieces (p, 4): curve, first and last ψ, whole; by
+curve the joints, as bits, that move along it; how many close, and how many are within the limits."""
+
+
+@dataclass(frozen=True, eq=False)
+class OneSwivel:
+    """An arm with its limits (7, 2), what counts as within them, and resting values (7,) [rad]."""
+
+    arm: SwivelArm
+    limits: Array
+    low: Array
+    high: Array
+    rest: Array
+
+    def solution(self, T: Array, most: int) -> Answer | None:
+        """The answer for a target T (4, 4) [m], up to `most` solutions; None where the blocks are to look at it."""
+        arm, curves = self.arm, swivel_curves(self.arm, T[None])
+        if curves.doubt[0]:
+            return None
+        pieces = swivel_pieces(curves, self.limits)
+        if pieces.doubt[0] or not len(pieces.row):
+            return None
+        of, psi = placed(pieces, COUNTS[0])
+        own = sorted(set(pieces.code.tolist()))
+        code = np.concatenate([pieces.code[of], own, own])
+        psi = np.concatenate([psi, FIRST_LOOKS[: len(own)], SECOND_LOOKS[: len(own)]])
+        q = curves.configurations(np.zeros(len(code), dtype=np.intp), CODES[code], psi)
+        moving = _moving(curves, own, q[len(of) :])
+        q, code = q[: len(of)], code[: len(of)]
+        position, angle = _missing(arm.chain, q, T)
+        closes = (position <= CLOSES * arm.size) & (angle <= CLOSES)
+        closing = len(q)
+        if not closes.all():
+            q, position, angle, code = q[closes], position[closes], angle[closes], code[closes]
+            closing = len(q)
+        if not ((q >= self.low) & (q <= self.high)).all():
+            q, inside = within_limits(q, arm.chain.revolute, self.limits, None)
+            q, position, angle, code = q[inside], position[inside], angle[inside], code[inside]
+        if not len(q):
+            return None
+        x = q.T
+        chosen = spread_of_one(x - TURN * np.rint(x / TURN), np.abs(q - self.rest).max(axis=1), most)
+        table = np.empty((len(chosen), 10))
+        table[:, :7], table[:, 7], table[:, 8], table[:, 9] = q[chosen], position[chosen], angle[chosen], code[chosen]
+        rows = np.array([pieces.code, pieces.first, pieces.last, pieces.whole]).T
+        return table, rows, moving, closing, len(q)
+
+
+def one_swivel(arm: SwivelArm, limits: Array, rest: Array) -> OneSwivel:
+    """An arm as one pose takes it, for limits (7, 2) and resting values (7,) [rad]."""
+    return OneSwivel(arm, limits, *tolerated(limits), rest)
+
+
+def moving_joints(curves: SwivelCurves, i: int, codes: Index) -> list[int]:
+    """The joints, as bits, that move along curves (c,) of pose i."""
+    c, k = len(codes), len(LOOKS)
+    return _moved(curves.configurations(np.full(c * k, i), CODES[np.tile(codes, k)], np.repeat(LOOKS, c)), c)
+
+
+def _moved(q: Array, count: int) -> list[int]:
+    """The joints, as bits, that are not alike in all configurations (k count, 7), look after look, of each curve."""
+    q = q.reshape(-1, count, 7)
+    away = q - q[0]
+    moves = np.abs(away - TURN * np.rint(away / TURN)).max(axis=0) > STILL
+    bits: list[int] = (moves @ BITS).tolist()
+    return bits
+
+
+def _moving(curves: SwivelCurves, own: list[int], q: Array) -> list[int]:
+    """By curve the joints, as bits, that move along it: curves `own` (c,), seen at the first looks q (k c, 7)."""
+    seen = _moved(q, len(own))
+    if any(bits != ALL_BUT_THE_ELBOW for bits in seen):
+        seen = moving_joints(curves, 0, np.array(own))
+    moving = [0] * CURVES
+    for code, bits in zip(own, seen, strict=True):
+        moving[code] = bits
+    return moving
+
+
+@fact
+def _steps(chain: Chain) -> tuple[Array, list[Array]]:
+    """The first constant's columns (4, 3, 1), and of each joint, which turns, and the constant after it the factors
+    (4, 6) of cos q x, cos q y, sin q x, sin q y, z, p."""
+    first, *rest = chain.constants
+    factors = [np.stack([C[0], C[1], -C[1], C[0], C[2], C[3]], axis=1) for C in rest]
+    return first[:3].T[:, :, None].copy(), factors
+
+
+def _missing(chain: Chain, q: Array, T: Array) -> tuple[Array, Array]:
+    """What configurations q (s, 7) lack of a target T (4, 4): distances (s,) [m] and angles (s,) [rad].
+
+    As `verify.residuals` has it.
+    """
+    first, factors = _steps(chain)
+    turns = q.T + chain.offsets[:, None]
+    cosines, sines = np.cos(turns), np.sin(turns)
+    parts, frame = np.empty((6, 3, len(q))), np.empty((4, 3, len(q)))
+    frame[:] = first
+    flat, out = parts.reshape(6, -1), frame.reshape(4, -1)
+    for c, s, factor in zip(cosines, sines, factors, strict=True):
+        np.multiply(frame[:2], c, out=parts[:2])
+        np.multiply(frame[:2], s, out=parts[2:4])
+        parts[4:] = frame[2:]
+        np.matmul(factor, flat, out=out)
+    frame -= T[:3].T[:, :, None]
+    frame *= frame
+    squares = np.add.reduce(frame, axis=1)
+    chord = np.sqrt(squares[0] + squares[1] + squares[2])
+    return np.sqrt(squares[3]), 2.0 * np.arcsin(np.minimum(chord / np.sqrt(8.0), 1.0))
