@@ -7,6 +7,7 @@
 
 #include "swivel.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -27,8 +28,8 @@ static const double TOUCHES = 1e-9, ALIKE = 1e-11, VAGUE = 1e-4, VAGUEST = 1e-3,
 static const double COUNT = 67.0, APART = 1e-5, ROUNDS_UP = 0.5 + 1e-6, CLOSES = 1e-9, STILL = 1e-9;
 #define LOOKS 12
 
-/* Of spread.py: ten to the DECIMALS, and what is preferred. */
-static const double DECIMALS = 1e7, PREFERRED = 1e3;
+/* Of spread.py: ten to the DECIMALS. WHOLE is 1.5 times 2 to the 52: a sum with it has no digits behind the point. */
+static const double DECIMALS = 1e7, WHOLE = 6755399441055744.0;
 
 /* A margin [rad] that is clear, far above VAGUEST. */
 static const double CLEAR = 1e-2;
@@ -39,6 +40,11 @@ static const double CLEAR = 1e-2;
 static const int FIRST[2] = {0, 4};
 
 static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* fmin and fmax without a call; of a number that is none the other one, if it comes first. */
+static double lesser(double a, double b) { return a < b ? a : b; }
+
+static double greater(double a, double b) { return a > b ? a : b; }
 
 static double wrapped(double angle) { return angle - TURN * rint(angle / TURN); }
 
@@ -187,16 +193,25 @@ static int curves_of(const SwivelArm *arm, const double *T, SwivelCurves *out) {
     return 1;
 }
 
-/* A triple at psi for one sign of its middle turn: sines and cosines of its turns, but for a factor. */
-static void turned(const SwivelArm *arm, const SwivelCurves *curves, int e, int t, int sign, double c, double s,
-                   double y[3], double x[3]) {
-    double g[5];
+/* A triple at psi: its entries 13, 23, 33, 31, 32, cosine and sine of its middle turn but for the sign of this. */
+typedef struct {
+    double g[5], cosine, sine;
+} Triple;
+
+static void triple_at(const SwivelArm *arm, const SwivelCurves *curves, int e, int t, double c, double s, Triple *out) {
     for (int j = 0; j < 5; j++) {
         const double *entry = curves->entries[e][t][j];
-        g[j] = entry[0] + entry[1] * c + entry[2] * s;
+        out->g[j] = entry[0] + entry[1] * c + entry[2] * s;
     }
-    double cosine = fmax(-1.0, fmin((g[2] - arm->k[t]) / arm->r[t], 1.0));
-    double sine = sqrt((1.0 - cosine) * (1.0 + cosine)) * (sign ? -1.0 : 1.0);
+    double x = greater(lesser((out->g[2] - arm->k[t]) / arm->r[t], 1.0), -1.0);
+    out->cosine = x;
+    out->sine = sqrt((1.0 - x) * (1.0 + x));
+}
+
+/* For one sign of its middle turn: sines and cosines of its turns, but for a factor. */
+static void turned(const SwivelArm *arm, const Triple *triple, int t, int sign, double y[3], double x[3]) {
+    const double *g = triple->g;
+    double cosine = triple->cosine, sine = sign ? -triple->sine : triple->sine;
     double cb = cosine * arm->cos_phi[t] - sine * arm->sin_phi[t], sb = sine * arm->cos_phi[t] + cosine * arm->sin_phi[t];
     double u[2], v[2];
     for (int j = 0; j < 2; j++) {
@@ -212,10 +227,9 @@ static void turned(const SwivelArm *arm, const SwivelCurves *curves, int e, int 
 }
 
 /* The least margin from the limits of a triple's joints; one that is clear is told as CLEAR or -CLEAR. */
-static double margin_of(const SwivelArm *arm, const SwivelCurves *curves, int e, int t, int sign, double c, double s,
-                        int *meets) {
+static double margin_of(const SwivelArm *arm, const Triple *triple, int t, int sign, int *meets) {
     double y[3], x[3], least = CLEAR;
-    turned(arm, curves, e, t, sign, c, s, y, x);
+    turned(arm, triple, t, sign, y, x);
     for (int j = 0; j < 3; j++) {
         int i = FIRST[t] + j;
         int free = arm->half[i] > TURN;
@@ -288,13 +302,20 @@ typedef struct {
 static void looked_at(const SwivelArm *arm, const SwivelCurves *curves, int e, double psi, double out[4],
                       unsigned char *stopped) {
     double margin[2][2], c = cos(psi), s = sin(psi);
-    int meets[2][2] = {{0, 0}, {0, 0}};
-    for (int t = 0; t < 2; t++)
+    int meets[2][2] = {{0, 0}, {0, 0}}, stopping = stopped && arm->stopping;
+    for (int t = 0; t < 2; t++) {
+        Triple triple;
+        /* What the shoulder is clearly beyond its limits for needs no wrist. */
+        if (t && !stopping && greater(margin[0][0], margin[0][1]) == -CLEAR) {
+            margin[1][0] = margin[1][1] = CLEAR;
+            break;
+        }
+        triple_at(arm, curves, e, t, c, s, &triple);
         for (int sign = 0; sign < 2; sign++)
-            margin[t][sign] =
-                margin_of(arm, curves, e, t, sign, c, s, stopped && arm->stopping ? &meets[t][sign] : NULL);
+            margin[t][sign] = margin_of(arm, &triple, t, sign, stopping ? &meets[t][sign] : NULL);
+    }
     for (int pair = 0; pair < 4; pair++) {
-        out[pair] = fmin(margin[0][pair >> 1], margin[1][pair & 1]);
+        out[pair] = lesser(margin[0][pair >> 1], margin[1][pair & 1]);
         if (stopped)
             stopped[pair] = (unsigned char)(meets[0][pair >> 1] | meets[1][pair & 1]);
     }
@@ -393,7 +414,9 @@ static void configuration(const SwivelArm *arm, const SwivelCurves *curves, int 
     double y[3], x[3], c = cos(psi), s = sin(psi);
     int e = code >> 2;
     for (int t = 0; t < 2; t++) {
-        turned(arm, curves, e, t, t ? code & 1 : (code >> 1) & 1, c, s, y, x);
+        Triple triple;
+        triple_at(arm, curves, e, t, c, s, &triple);
+        turned(arm, &triple, t, t ? code & 1 : (code >> 1) & 1, y, x);
         for (int j = 0; j < 3; j++)
             q[FIRST[t] + j] = upwards(wrapped(atan2(y[j], x[j]) - arm->chain.offsets[FIRST[t] + j]));
     }
@@ -439,25 +462,28 @@ static int into_limits(const SwivelArm *arm, double *q) {
     return inside;
 }
 
+/* Distances count in whole parts of 1 / DECIMALS, rounded to even. */
+static int parts_of(double distance) { return (int)(distance * DECIMALS + WHOLE - WHOLE); }
+
 /* The places of up to `most` well spread ones of some configurations, each joint in a row of its own. */
 static int spread(double (*x)[MOST_PLACED], int count, const double *rest, double (*q)[SEVEN], int most, int *chosen) {
-    double distance[MOST_PLACED], gap[MOST_PLACED];
-    int pick = 0, found = 0;
-    double least = INFINITY;
+    double gap[MOST_PLACED], least = INFINITY;
+    int distance[MOST_PLACED], pick = 0, found = 0;
     for (int k = 0; k < count; k++) {
         double move = 0.0;
         for (int i = 0; i < SEVEN; i++)
-            move = fmax(move, fabs(q[k][i] - rest[i]));
-        move = PREFERRED - rint(move * DECIMALS) / DECIMALS;
-        if (-move < least) {
-            least = -move;
+            move = greater(move, fabs(q[k][i] - rest[i]));
+        move = rint(move * DECIMALS);
+        if (move < least) {
+            least = move;
             pick = k;
         }
-        distance[k] = INFINITY;
+        distance[k] = INT_MAX;
     }
-    while (found < most && found < count) {
-        double best = -INFINITY;
+    for (;;) {
         chosen[found++] = pick;
+        if (found == most || found == count)
+            return found;
         for (int k = 0; k < count; k++)
             gap[k] = 0.0;
         for (int i = 0; i < SEVEN; i++) {
@@ -465,22 +491,19 @@ static int spread(double (*x)[MOST_PLACED], int count, const double *rest, doubl
             double from = row[pick];
             for (int k = 0; k < count; k++) {
                 double away = fabs(row[k] - from), back = TURN - away;
-                away = away < back ? away : back;
-                gap[k] = gap[k] > away ? gap[k] : away;
+                gap[k] = greater(gap[k], lesser(away, back));
             }
         }
+        distance[pick] = -1;
+        int best = -1;
         for (int k = 0; k < count; k++) {
-            double rounded = rint(gap[k] * DECIMALS) / DECIMALS;
+            int rounded = parts_of(gap[k]);
             distance[k] = distance[k] < rounded ? distance[k] : rounded;
+            best = best > distance[k] ? best : distance[k];
         }
-        distance[pick] = -INFINITY;
-        for (int k = 0; k < count; k++)
-            if (distance[k] + PREFERRED > best) {
-                best = distance[k] + PREFERRED;
-                pick = k;
-            }
+        for (pick = 0; distance[pick] != best; pick++)
+            ;
     }
-    return found;
 }
 
 int swivel_answer(const SwivelArm *arm, void (*poses)(const Chain *, const double *, ptrdiff_t, double *),
