@@ -16,7 +16,7 @@ from robokin.inverse.hold import held_arm
 from robokin.inverse.one_target_arm import one_target_arm
 from robokin.kernel.chain import chain_of
 
-HELD = [("panda", 3), ("panda", 5), ("panda", 6), *(("iiwa14", joint) for joint in (0, 1, 2, 4, 5, 6))]
+HELD = [("panda", 4), ("panda", 3), ("panda", 5), ("panda", 6), *(("iiwa14", joint) for joint in (0, 1, 2, 4, 5, 6))]
 """Arms and joints (from 0) whose others have a spherical shoulder or wrist, and code for it."""
 
 GENERAL = pytest.param("panda", 2, marks=pytest.mark.slow)

@@ -28,7 +28,7 @@ from robokin.model import CoupledRobot, Robot
 native = native_kernel.native
 pytestmark = pytest.mark.skipif(native is None, reason="no native kernel in use")
 
-ROUNDING = 5e-15
+ROUNDING = 2e-14
 """Of joint values [rad], times the least singular value there."""
 
 

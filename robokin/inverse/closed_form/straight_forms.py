@@ -4,10 +4,10 @@ Statement. Six turning joints with a spherical wrist, or with three parallel axe
 some ten microseconds, where the arrays of `spherical_wrist` and `three_parallel_axes` take hundreds.
 Derivation. The solvers' own equations are walked with terms in place of columns (`straight_line`). Where arrays have a
 new axis for two roots the code has a loop over both; what is not real is passed over there. Every root is worked out by
-the operations of the arrays, in their order, so that it is the same to the last digit.
+the operations of the arrays, in their order, so that it is the same to the last digit. But of an equation of the second
+degree in cosine and sine the arrays find eigenvalues and the code chords (`two_chords`), which agree to rounding.
 Degenerate case. Code is for what is regular. Wherever the arrays would mark a target (a short lever, an equation that
-says nothing) the code gives no answer (None), and the arrays are asked. Arms with sliding joints, and those whose
-equations have the fourth degree, have no code.
+says nothing) the code gives no answer (None), and the arrays are asked. Arms with sliding joints have no code.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from robokin.inverse.closed_form.form_code import (
     NoCodeError,
     in_two_turns,
     linear_turn,
+    made_unit,
     quadratic,
     root_of,
     says_something,
@@ -35,6 +36,7 @@ from robokin.inverse.closed_form.spherical_wrist import SphericalTriple, along_g
 from robokin.inverse.closed_form.three_parallel_axes import ThreeParallel
 from robokin.inverse.closed_form.trigonometry import CLAMP, FREE, Turn, turned
 from robokin.inverse.closed_form.turns import lever_of, right_angled
+from robokin.inverse.closed_form.two_chords import turns_of_second_degree
 from robokin.kernel.code_lines import Term, written
 from robokin.kernel.entries import (
     Entry,
@@ -163,7 +165,9 @@ def _third(code: FormCode, solver: SphericalTriple, v: list[Form], square: Form,
     linear = combined((-1.0,), (square,))
     n = parallel_gradient([linear, *forms])
     if n is None:
-        raise NoCodeError
+        f = combined((1.0, 1.0), (sum_of_products(Revolute, [(1.0, form, form) for form in forms]), linear))
+        says_something(code, f)
+        return turns_of_second_degree(code, f)
     along = [along_gradient(form, n) for form in forms]
     products = sum_of_products(Prismatic, [(1.0, form, form) for form in along])
     k = combined((1.0, 1.0), (products, along_gradient(linear, n)))
@@ -220,23 +224,37 @@ def _last(Q: Matrix, R: Matrix, axis: Vector) -> Turn:
 # Three parallel axes ------------------------------------------------------------------------------------------
 
 
+def _first(code: FormCode, solver: ThreeParallel, f: list[Form]) -> Turn:
+    """q_a."""
+    if solver.rank == 2:
+        products = [Revolute.product(part, part) for part in (combined(row, f) for row in solver.G.inverse)]
+        equation = combined((1.0, 1.0, -1.0), (*products, [1.0]))
+        says_something(code, equation)
+        return turns_of_second_degree(code, equation)
+    equation = combined((1.0, -solver.G.ratio), (f[solver.G.rest], f[solver.G.main]))
+    says_something(code, equation)
+    return linear_turn(code, equation[1], equation[2], times(-1.0, equation[0]))
+
+
 def _parallel(code: FormCode, solver: ThreeParallel, target: EntryFrame) -> list[list[str]]:
     """The leaves of an arm with three parallel axes."""
-    if not _all_revolute(solver) or solver.rank != 1:
+    if not _all_revolute(solver):
         raise NoCodeError
     if solver.reversed:
         target = backwards_closing(target)
     A, D = solver.A or target, solver.D or target
     f = solver.equations(A, D)
-    equation = combined((1.0, -solver.G.ratio), (f[solver.G.rest], f[solver.G.main]))
-    says_something(code, equation)
-    q_a = linear_turn(code, equation[1], equation[2], times(-1.0, equation[0]))
+    q_a = _first(code, solver, f)
     w = applied_back(A.R, Revolute.back(q_a, D.R[2]))
     code.long(w[0], w[1], LEVER)
-    if solver.direct:
+    if solver.rank == 2:
+        minus_c, minus_s = (Revolute.at(combined(row, f), q_a) for row in solver.G.inverse)
+        q_c = made_unit(code, times(-1.0, minus_c), times(-1.0, minus_s), FREE)
+    elif solver.direct:
         q_b, q_c = in_two_turns(code, solver.B.R, solver.u, w)
     else:
         q_c = linear_turn(code, *solver.height, times(-1.0, Revolute.at(f[1], q_a)))
+    if solver.rank == 2 or not solver.direct:
         q_b = turning_onto(code, applied(solver.B.R, Revolute.onward(q_c, solver.u)), w)
     p, across = solver.seen_from_first(A, D, (q_a, q_b, q_c))
     l1, l2 = solver.elbow.l1, solver.elbow.l2
