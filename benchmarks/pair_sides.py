@@ -2,8 +2,8 @@
 
 `python -m benchmarks.pair_sides SIDE FOLDER` reads a question a line from standard input, and writes a line of JSON for
 each: {"seconds": [per call or per pose]} or {"missing": why}. A peer that aborts ends its own process and no other.
-FOLDER holds what is asked about, so that a peer's environment needs no robokin: for each arm an `.npz` with q, T and
-the cells alpha, a, d of its table.
+FOLDER holds what is asked about, so that a peer's environment needs no robokin: for each arm an `.npz` with q, T, the
+joints that are held with their values, and the cells alpha, a, d of its table.
 """
 
 from __future__ import annotations
@@ -94,10 +94,11 @@ class Robokin(Side):
     def arm(self, name: str) -> Any:
         import robokin
 
-        return robokin.load(name)
+        return robokin.load(name.partition("-q")[0])
 
-    def options(self, name: str) -> dict[str, Any]:
-        return {"hold": {2: 0.3}} if name in ("panda", "iiwa14") else {}
+    def options(self, rows: Any) -> dict[str, Any]:
+        hold = {int(joint): value for joint, value in rows["held"].tolist()}
+        return {"hold": hold} if hold else {}
 
     def fk_one(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:
         from robokin import forward_kinematics
@@ -124,19 +125,19 @@ class Robokin(Side):
     def ik_one(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:
         from robokin import solve_ik
 
-        options = self.options(robot.id)
+        options = self.options(rows)
         return loop(lambda T: solve_ik(robot, T, **options), rows["T"][:count])
 
     def ik_objects(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:
         from robokin import solve_ik
 
-        options = self.options(robot.id)
+        options = self.options(rows)
         return loop(lambda T: [one.q for one in solve_ik(robot, T, **options).solutions], rows["T"][:count])
 
     def ik_batch(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:
         from robokin import solve_ik
 
-        T, options = rows["T"][:count], self.options(robot.id)
+        T, options = rows["T"][:count], self.options(rows)
         return lambda: solve_ik(robot, T, **options)
 
     def csv_batch(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:

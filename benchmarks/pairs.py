@@ -23,8 +23,10 @@ from robokin.number_text import show
 
 SEED = 560
 ROUNDS = 3
-ARMS = ("puma560", "ur5e", "crx10ia", "panda", "iiwa14")
-HELD = {"panda": {2: 0.3}, "iiwa14": {2: 0.3}}
+ARMS = ("puma560", "ur5e", "crx10ia", "panda", "panda-q5", "panda-q7", "iiwa14")
+"""What is asked about; after -q the joint that is held, where it is not the third."""
+HELD = {"panda": {2: 0.3}, "panda-q5": {4: 0.3}, "panda-q7": {6: 0.3}, "iiwa14": {2: 0.3}}
+"""The third of a Panda leaves an arm without a closed form, the fifth one of the fourth degree."""
 LINES = 200_000
 """Of the files."""
 
@@ -64,6 +66,11 @@ for arm, count in (("crx10ia", 500), ("panda", 1000), ("iiwa14", 2000)):
         Question("inverse kinematics, one", "ik-one", arm, 20, SSIK),
         Question("inverse kinematics, one, all objects", "ik-objects", arm, 20),
         Question("inverse kinematics, batch", "ik-batch", arm, count),
+    ]
+for arm in ("panda-q5", "panda-q7"):
+    QUESTIONS += [
+        Question("inverse kinematics, one", "ik-one", arm, 40),
+        Question("inverse kinematics, batch", "ik-batch", arm, 2000),
     ]
 QUESTIONS += [
     Question("CSV to CSV, a line", "csv-batch", "puma560", LINES, (("polars", "csv-batch"),)),
@@ -118,12 +125,13 @@ class Answerer:
 def prepare(folder: str) -> None:
     """What is asked about, for all sides."""
     for name in ARMS:
-        robot = robokin.load(name)
+        robot = robokin.load(name.partition("-q")[0])
         q = np.random.default_rng(SEED).uniform(*np.clip(robot.limits, -3.0, 3.0).T, (100_000, robot.n))
         for joint, value in HELD.get(name, {}).items():
             q[:, joint] = value
+        held = np.array([*HELD.get(name, {}).items()]).reshape(-1, 2)
         cells = {cell: np.array([getattr(row, cell) for row in robot.rows]) for cell in ("alpha", "a", "d")}
-        np.savez(Path(folder) / f"{name}.npz", q=q, T=robokin.forward_kinematics(robot, q[:5000]), **cells)
+        np.savez(Path(folder) / f"{name}.npz", q=q, T=robokin.forward_kinematics(robot, q[:5000]), held=held, **cells)
     rows = np.random.default_rng(SEED).uniform(-100, 100, (LINES, 6))
     np.save(Path(folder) / "rows.npy", rows)
     (Path(folder) / "rows.csv").write_text("\n".join(",".join(map(repr, row)) for row in rows.tolist()) + "\n")
