@@ -10,18 +10,18 @@ Degenerate case. No targets: no solutions, and nothing that is not complete.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from robokin.arrays import Array, Index
-from robokin.inverse.plain_targets import PlainBlock, kernel_form
+from robokin.inverse.batch_tables import NativeAnswers, NativeKind, empty_tables
+from robokin.inverse.plain_targets import PlainBlock, kernel_form, plain_kind
 from robokin.inverse.single_answer import known_reason, result_of, why_not
 from robokin.inverse.solutions import BatchResult, Result
 from robokin.inverse.solve_blocks import BLOCK
-from robokin.inverse.swivel_block import SwivelBlock, swivel_request
+from robokin.inverse.swivel_block import swivel_kind, swivel_request
 from robokin.inverse.target_block import Request, TargetBlock
 from robokin.jobs.ordered_map import ordered_map
 
@@ -43,18 +43,11 @@ class _Share:
 
 def answered_batch(request: Request, T: Array, cores: int | None) -> BatchResult:
     """The answers for targets T (m, 4, 4) [m], on some cores, all usable ones for None."""
-    parts: list[_Share] = []
-    left = None
     kind = _native_kind(request)
-    if kind is not None:
-        lefts = [np.empty(0, dtype=np.intp)]
-        answers = ordered_map(partial(kind, request), _blocks(T), cores, workers="threads")
-        for start, plain in zip(_starts(T), answers, strict=True):
-            lefts.append(start + np.flatnonzero(~plain.plain))
-            whole = slice(start, start + len(plain.plain))
-            parts.append(_Share(start + np.flatnonzero(plain.plain) if len(lefts[-1]) else whole, plain))
-        left = np.concatenate(lefts)
+    known = None if kind is None else NativeAnswers(kind, T, BLOCK, cores)
+    left = None if known is None else np.flatnonzero(~known.plain)
     others = T if left is None else T[left]
+    parts: list[_Share] = []
     for start, block in zip(
         _starts(others), ordered_map(partial(TargetBlock, request), _blocks(others), cores), strict=True
     ):
@@ -62,14 +55,14 @@ def answered_batch(request: Request, T: Array, cores: int | None) -> BatchResult
         parts.append(_Share(whole if left is None else left[whole], block))
     for part in parts:
         part.block.request = request
-    return _batch(request, len(T), parts)
+    return _batch(request, len(T), known, parts)
 
 
-def _native_kind(request: Request) -> Callable[[Request, Array], PlainBlock | SwivelBlock] | None:
-    """The blocks of the native kernel that a request is for, if any."""
+def _native_kind(request: Request) -> NativeKind | None:
+    """How the native kernel answers a request, if it does."""
     if kernel_form(request) is not None:
-        return PlainBlock
-    return None if swivel_request(request) is None else SwivelBlock
+        return plain_kind(request)
+    return None if swivel_request(request) is None else swivel_kind(request)
 
 
 def _starts(T: Array) -> range:
@@ -80,21 +73,20 @@ def _blocks(T: Array) -> list[Array]:
     return [T[start : start + BLOCK] for start in _starts(T)]
 
 
-def _batch(request: Request, m: int, parts: list[_Share]) -> BatchResult:
-    """The answers of all parts for m targets."""
-    n = request.robot.n
-    counts = np.zeros(m, dtype=np.intp)
+def _batch(request: Request, m: int, known: NativeAnswers | None, parts: list[_Share]) -> BatchResult:
+    """The answers of the native kernel and of blocks for m targets."""
+    counts = np.zeros(m, dtype=np.intp) if known is None else known.count.copy()
     for part in parts:
         counts[part.targets] = part.block.count
     most = int(counts.max(initial=0))
-    q, position, angle = np.empty((m, most, n)), np.empty((m, most)), np.empty((m, most))
-    inside = np.empty((m, most), dtype=bool)
+    q, position, angle, inside = empty_tables(m, most, request.robot.n)[-4:] if known is None else known.listed(most)
     for part in parts:
         at = part.targets
         q[at], position[at], angle[at], inside[at] = part.block.padded(most)
 
     def place(i: int) -> tuple[TargetBlock, int]:
-        return next(found for part in parts if (found := part.place(i)) is not None)
+        found = None if known is None else known.place(i)
+        return found or next(found for part in parts if (found := part.place(i)) is not None)
 
     def single(i: int) -> Result:
         block, k = place(i)
@@ -104,27 +96,35 @@ def _batch(request: Request, m: int, parts: list[_Share]) -> BatchResult:
         block, k = place(i)
         if block.count[k]:
             return None
-        known = known_reason(block, k)
-        return why_not(request, block, k)[0] if known is None else known
+        why = known_reason(block, k)
+        return why_not(request, block, k)[0] if why is None else why
 
     analysis = request.analysis
     method = "numeric" if request.method == "numeric" else analysis.method
-    complete = not analysis.idle and all(
+    complete = not analysis.idle and (known is None or known.complete)
+    complete = complete and all(
         bool(np.all(part.block.claims.basis > 0) and not part.block.cut.any()) for part in parts
     )
-    names = partial(_names, parts, counts)
+    names = partial(_names, known, parts, counts.copy())
     return BatchResult(q, counts, position, angle, inside, complete, method, single, names, reason)
 
 
-def _names(parts: list[_Share], counts: Index) -> list[str]:
+def _names(known: NativeAnswers | None, parts: list[_Share], counts: Index) -> list[str]:
     """The names of all solutions, target after target, of which each has so many (m,)."""
-    if all(isinstance(part.targets, slice) for part in parts):
+    if known is None:
         return [name for part in parts for name in part.block.names]
+    blocks = [(start + np.flatnonzero(known.plain[start : start + known.size]), start) for start in known.starts]
     first = np.cumsum(counts) - counts
     names = np.empty(int(counts.sum()), dtype=object)
+
+    def put(targets: Index | slice, block: TargetBlock) -> None:
+        count = block.count
+        start = np.repeat(first[targets] - np.cumsum(count) + count, count)
+        names[start + np.arange(len(start))] = block.names
+
+    for targets, start in blocks:
+        put(targets, known.block(start))
     for part in parts:
-        count = part.block.count
-        start = np.repeat(first[part.targets] - np.cumsum(count) + count, count)
-        names[start + np.arange(len(start))] = part.block.names
+        put(part.targets, part.block)
     listed: list[str] = names.tolist()
     return listed

@@ -32,6 +32,7 @@ from robokin.inverse.one_target_arm import OneTargetArm, one_target_arm
 from robokin.inverse.solution_names import branch_names
 from robokin.inverse.solutions import Arc, BatchResult, Family, Result, Solution, named_later
 from robokin.inverse.unmade_result import told_result
+from robokin.jobs.shared_rows import by_threads
 from robokin.kernel.chain import chain_of, row_standing
 from robokin.kernel.facts import fact, tell
 from robokin.model import CoupledRobot, Robot
@@ -40,6 +41,9 @@ from robokin.model.robot import LIMIT_TOLERANCE
 KEPT = 16
 """Arms with joints held that are kept for one robot: enough for a few values in turn; a sweep over many values must
 not fill the memory."""
+
+SHARE = 16_000
+"""Targets whose solutions a thread puts together at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,9 +104,22 @@ class HeldArm:
     def whole(self, q: Array) -> Array:
         """Joint values (..., n) from those of the part (..., n - h); NaN where these are (padded rows)."""
         out = np.empty((*q.shape[:-1], self.n))
-        out[..., self.free] = q
-        out[..., self.joints] = np.where(np.isnan(q[..., :1]), np.nan, self.values)
+        self._put(q, out)
         return out
+
+    def whole_batch(self, q: Array, cores: int | None) -> Array:
+        """The same of the configurations (m, k, n - h) of a batch, which cores share."""
+        m, k, n = q.shape
+        return by_threads(
+            lambda rows, out: self._put(rows.reshape(len(rows), k, n), out), q.reshape(m, k * n), (k, self.n), SHARE,
+            cores,
+        )  # fmt: skip
+
+    def _put(self, q: Array, out: Array) -> None:
+        source = np.zeros(self.n, dtype=np.intp)
+        source[self.free] = np.arange(len(self.free))
+        np.take(q, source, axis=-1, out=out, mode="clip")  # clip: or else it works on a copy of `out`
+        out[..., self.joints] = np.where(np.isnan(q[..., :1]), np.nan, self.values)
 
     def numbers(self, joints: tuple[int, ...]) -> tuple[int, ...]:
         """Joints of the part in the whole robot's numbers; both count from 1."""
@@ -175,7 +192,7 @@ def held_inside(robot: Robot, joint: int, value: float) -> bool:
     return bool(low - LIMIT_TOLERANCE <= value <= high + LIMIT_TOLERANCE)
 
 
-def with_held_joints(robot: Robot, arm: HeldArm, batch: BatchResult) -> BatchResult:
+def with_held_joints(robot: Robot, arm: HeldArm, batch: BatchResult, cores: int | None = 1) -> BatchResult:
     """The answers of the part as answers of the robot: the held values put in, joints by the robot's numbers.
 
     The solutions are some of all that the robot has at the pose. Where these are finitely many, the robot's names tell
@@ -185,7 +202,7 @@ def with_held_joints(robot: Robot, arm: HeldArm, batch: BatchResult) -> BatchRes
     renamed = not (isinstance(robot, CoupledRobot) and not robot.drive.invertible)
     renamed = renamed and analysis_of(motion).redundancy == 0
     listed = np.arange(batch.q.shape[1]) < batch.count[:, None]
-    q = arm.whole(batch.q)
+    q = arm.whole_batch(batch.q, cores)
 
     def single(i: int) -> Result:
         return _whole_result(arm, batch[i], robot if renamed else None)

@@ -10,19 +10,24 @@ Of targets that clearly have no solution the proof by a homotopy is found when a
 
 from __future__ import annotations
 
-from functools import cached_property
+from dataclasses import replace
+from functools import cached_property, partial
 
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
-from robokin.inverse.analysis import Analysis
+from robokin.inverse.analysis import Analysis, General
+from robokin.inverse.batch_tables import BatchTables, NativeKind
 from robokin.inverse.claims import COUNTED, NOTHING, Claims
 from robokin.inverse.numeric.closest import TOGETHER
 from robokin.inverse.one_target_arm import one_target_arm
-from robokin.inverse.target_block import Request, TargetBlock, in_order
+from robokin.inverse.target_block import Request, TargetBlock
 from robokin.inverse.verify import Found
 from robokin.kernel.native_kernel import native
 from robokin.model import Robot
+
+QUICK_SHARE, SLOW_SHARE = 4000, 250
+"""Targets that a thread takes at once of a closed form, and of an elimination: some milliseconds."""
 
 
 def kernel_form(request: Request) -> object | None:
@@ -49,52 +54,63 @@ def quick_within(robot: Robot, analysis: Analysis, T: Array) -> tuple[Flags, Fla
     return plain, plain & (listed > 0), q[np.arange(len(T)), np.maximum(listed - 1, 0)]
 
 
-class PlainBlock(TargetBlock):
-    """The answers of the native kernel for those targets of a block that it answers.
+def plain_kind(request: Request) -> NativeKind:
+    """How the native kernel answers a request for an arm that it knows (`kernel_form`)."""
+    assert native is not None
+    arm = one_target_arm(request.robot)
+    assert arm is not None
+    rows = native.roots(arm.kernel, arm.elimination)
+    fill, block = partial(_fill, request), partial(PlainBlock, request)
+    quick = arm.elimination is None
+    return NativeKind(rows, 6, QUICK_SHARE if quick else SLOW_SHARE, fill, block, proven=True, quick=quick)
 
-    plain: (m,) which of the given ones these are; tables: (k, r, 6), (k, r), (k, r), (k, r) what is listed of each, in
-    as many rows as the closed form has roots: joint values, distances, angles (NaN where there are fewer solutions),
-    and which are within the limits.
+
+def _fill(request: Request, T: Array, tables: BatchTables) -> None:
+    """Put what is plain of targets T (m, 4, 4) [m] into their tables."""
+    assert native is not None
+    arm = one_target_arm(request.robot)
+    assert arm is not None
+    near = None if request.near is None else np.ascontiguousarray(request.near)
+    native.solutions(arm.kernel, T, request.limits, near, arm.elimination, request.most, tables)
+
+
+class PlainBlock(TargetBlock):
+    """The answers of the native kernel for targets that it answers, from their tables.
+
+    tables: what is listed of each target, in rows of joint values, distances, angles, and which are within the limits.
     """
 
-    def __init__(self, request: Request, T: Array) -> None:
-        """Answer what is plain of targets T (m, 4, 4) [m]; the others are no part of this block."""
-        assert native is not None
-        self.plain, count, listed, *tables = native.solutions(kernel_form(request), T, request.limits, request.near)
-        if not self.plain.all():
-            plain = self.plain
-            T, count, listed, tables = T[plain], count[plain], listed[plain], [table[plain] for table in tables]
+    def __init__(self, request: Request, T: Array, tables: BatchTables) -> None:
+        """The answers for targets T (m, 4, 4) [m], which all are plain."""
         self.request, self.T, self.tables = request, T, tables
+        self.closing, self.within, self.count = tables.closing, tables.within, tables.listed
         self._nearest, self._arcs, self.swivel, self._proven = {}, {}, None, dict[int, tuple[TargetBlock, int]]()
-        self.claims = Claims(np.full(len(T), COUNTED, dtype=np.int8), request.analysis.number, count, branches=True)
-        self.claims.candidates, self.claims.duplicates = count, np.zeros_like(count)
-        self.closing, self.within, self.count = count, listed, listed
-        if request.near is not None or request.most is not None:
-            self.found, self.inside = in_order(request, self.found, self.inside, None)
-            self.count = np.bincount(self.found.index, minlength=len(T))
+        branches = not isinstance(request.analysis.solver, General)
+        basis = np.full(len(T), COUNTED, dtype=np.int8)
+        self.claims = Claims(basis, request.analysis.number, self.closing, branches=branches)
+        self.claims.candidates, self.claims.duplicates = tables.tried, np.zeros_like(tables.tried)
         self.cut = self.within > self.count
 
     @cached_property
     def found(self) -> Found:  # type: ignore[override]
         """What is listed, target after target."""
-        q, position, angle, _ = (table[self._rows] for table in self.tables)
-        return Found(np.repeat(np.arange(len(self.T)), self.within), q, position, angle)
+        q, position, angle = (table[self._rows] for table in (self.tables.q, self.tables.position, self.tables.angle))
+        return Found(np.repeat(np.arange(len(self.T)), self.count), q, position, angle)
 
     @cached_property
     def inside(self) -> Flags:  # type: ignore[override]
         """Which of these are within the limits."""
-        which: Flags = self.tables[3][self._rows]
-        return which
+        return self.tables.inside[self._rows]
 
     @cached_property
     def _rows(self) -> Flags:
-        return np.arange(self.tables[1].shape[1]) < self.within[:, None]
+        return np.arange(self.tables.q.shape[1]) < self.count[:, None]
 
     @cached_property
     def every(self) -> tuple[Array, Index]:  # type: ignore[override]
         """All solutions, within the limits or not, and their targets."""
-        assert native is not None
-        _, count, _, q, *_ = native.solutions(kernel_form(self.request), self.T, False, self.request.near)
+        every = replace(self.request, limits=False, most=None)
+        _, _, count, _, _, q, *_ = plain_kind(every).filled(self.T, 1)
         return q[np.arange(q.shape[1]) < count[:, None]], np.repeat(np.arange(len(count)), count)
 
     def answered_by(self, i: int) -> tuple[TargetBlock, int]:
@@ -111,10 +127,3 @@ class PlainBlock(TargetBlock):
                 block.claims.basis[k], block.claims.N = COUNTED, self.claims.N
             self._proven |= {row: (block, k) for k, row in enumerate(rows.tolist())}
         return self._proven[i]
-
-    def padded(self, most: int) -> tuple[Array, Array, Array, Flags]:
-        """What is listed in tables of `most` rows a target: see `TargetBlock.padded`."""
-        if self.request.near is None and self.request.most is None and most <= self.tables[1].shape[1]:
-            q, position, angle, inside = (table[:, :most] for table in self.tables)
-            return q, position, angle, inside
-        return super().padded(most)

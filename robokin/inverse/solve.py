@@ -27,6 +27,7 @@ from robokin.inverse.swivel_block import SwivelSolution, one_swivel_arm, solve_s
 from robokin.inverse.target_block import Method, Request
 from robokin.inverse.unmade_result import UnmadeResult, question_later
 from robokin.jobs.ordered_map import MOST_CORES
+from robokin.jobs.shared_rows import by_threads
 from robokin.kernel.native_kernel import native
 from robokin.model import CoupledRobot, Robot, expect_robot
 from robokin.model.named_values import plain_joint_values, plain_poses
@@ -34,6 +35,9 @@ from robokin.spatial.rigid_poses import rigid
 
 METHODS = ("auto", "analytic", "numeric")
 TASKS = ("pose", "approach", "position")
+
+COPIED = 16_000
+"""Targets that are copied and looked at together: a millisecond's work."""
 
 
 def solve_ik(
@@ -71,10 +75,12 @@ def solve_ik(
         one = _one_target(robot, T, limits, near, method, task, most, seed, hold)
         if one is not None:
             return one
-    poses = target_poses(plain_poses(T, "T", robot, task) if isinstance(robot, Robot) else T)
+    given = plain_poses(T, "T", robot, task) if isinstance(robot, Robot) else T
+    cores = None if cores is None else expect_whole(cores, "cores", 1, MOST_CORES)
+    poses = target_poses(given, cores=cores)
     alone = poses.ndim == 2
     targets = poses.reshape(-1, 4, 4)
-    batch = solve_many(robot, targets, limits, near, method, task, most, seed, turns, hold, alone, cores)
+    batch = solve_many(robot, targets, limits, near, method, task, most, seed, turns, hold, alone, cores, checked=True)
     batch = replace(batch, question=Question(robot, targets, task, bool(limits), dict(hold or {})))
     if not alone and _follows(robot, method, task, hold):
         asked: dict[str, Any] = {
@@ -202,8 +208,9 @@ def solve_many(
     hold: Mapping[int, float] | None = None,
     motions: bool = False,
     cores: int | None = 1,
+    checked: bool = False,
 ) -> BatchResult:
-    """`solve_ik` for poses T: (m, 4, 4), whatever their number.
+    """`solve_ik` for poses T: (m, 4, 4), whatever their number; `checked` are as `target_poses` gives them.
 
     With `motions` the self-motions of arms with one joint to spare are followed too, as `solve_ik` does for one pose:
     that takes a tenth of a second each. Those of singular poses always are.
@@ -224,18 +231,18 @@ def solve_many(
             wish = None if near is None else robot.drive.motions(near)
             return solve_many(arm, T, bounded, wish, method, task, listed, seed, False, None, motions, cores)
 
-        poses = target_poses(T).reshape(-1, 4, 4)
+        poses = _checked(T, checked)
         return solve_coupled(robot, poses, free, task, most, seed, limits, near, turns)
     if hold:
         arm = held_arm(robot, hold)
         if limits:
             check_held_limits(robot, arm)
         own = own_near(arm, near)
-        batch = solve_many(arm.part, T, limits, own, method, task, most, seed, turns, None, motions, cores)
-        return with_held_joints(robot, arm, batch)
+        batch = solve_many(arm.part, T, limits, own, method, task, most, seed, turns, None, motions, cores, checked)
+        return with_held_joints(robot, arm, batch, cores)
     if turns:
         check_turns(robot, limits)
-    poses = target_poses(T).reshape(-1, 4, 4)
+    poses = _checked(T, checked)
     request = asked = replace(_request(robot, limits, near, method, task, most, seed), motions=motions)
     if turns and not (asked.analysis.redundancy or asked.analysis.solver is None):
         request = replace(asked, most=None)  # what is cut is the list with the full turns in it
@@ -245,19 +252,30 @@ def solve_many(
     return with_turn_counts(robot, batch) if limits else batch
 
 
-def target_poses(T: ArrayLike, argument: str = "T") -> Array:
+def _checked(T: ArrayLike, checked: bool) -> Array:
+    """Targets as an array (m, 4, 4) [m]."""
+    poses = T if checked and isinstance(T, np.ndarray) else target_poses(T)
+    return poses.reshape(-1, 4, 4)
+
+
+def target_poses(T: ArrayLike, argument: str = "T", cores: int | None = 1) -> Array:
     """Targets (4, 4) or (m, 4, 4) [m] as an array, each with the rotation that is nearest to the given one.
 
-    Rotations may be off by `DIGITS_LOST`: a matrix copied from print has three or four digits. Raises InputError for
-    what are no rigid transforms, saying how far off.
+    Rotations may be off by `DIGITS_LOST`: a matrix copied from print has three or four digits. `cores` share many.
+    Raises InputError for what are no rigid transforms, saying how far off.
     """
-    poses = np.array(expect_numbers(plain_poses(T, argument), argument, "an array of numbers (4, 4) or (m, 4, 4)"))
-    if native is not None and poses.ndim in (2, 3) and poses.shape[-2:] == (4, 4) and native.rigid(poses):
-        return poses
-    if poses.ndim not in (2, 3) or poses.shape[-2:] != (4, 4):
-        found = described(poses) if poses.ndim else "a single number"
+    given = expect_numbers(plain_poses(T, argument), argument, "an array of numbers (4, 4) or (m, 4, 4)")
+    if given.ndim not in (2, 3) or given.shape[-2:] != (4, 4):
+        found = described(given) if given.ndim else "a single number"
         raise InputError(f"{argument}: found {found}, expected a pose (4, 4) or poses (m, 4, 4)")
-    return rigid(poses, argument)
+    plain = []
+
+    def copied(rows: Array, poses: Array) -> None:
+        poses[:] = rows.reshape(poses.shape)
+        plain.append(native is not None and native.rigid(poses))
+
+    poses = by_threads(copied, given.reshape(-1, 16), (4, 4), COPIED, cores).reshape(given.shape)
+    return poses if all(plain) else rigid(poses, argument)
 
 
 def _wished(robot: Robot, near: ArrayLike | None) -> Array | None:

@@ -18,6 +18,7 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis, analysis_of
+from robokin.inverse.batch_tables import BatchTables, NativeKind
 from robokin.inverse.claims import Claims
 from robokin.inverse.full_turns import count_equivalents, turning
 from robokin.inverse.known_motions import ALL_MOTIONS, MOVING, turns_on
@@ -90,24 +91,34 @@ def swivel_request(request: Request) -> OneSwivelArm | None:
     return None if known is None or known.kernel is None or known.analysis is not request.analysis else known
 
 
-class SwivelBlock(TargetBlock):
-    """The answers of the native kernel for those targets of a block that it answers.
+SHARE = 100
+"""Targets that a thread takes at once: some milliseconds."""
 
-    plain: (m,) which of the given ones these are; tables: (k, r, 7), (k, r), (k, r) what is listed of each: joint
-    values, distances, angles (NaN where there are fewer solutions).
+
+def swivel_kind(request: Request) -> NativeKind:
+    """How the native kernel answers a request for an arm that it knows (`swivel_request`)."""
+    most = MOST if request.most is None else request.most
+    return NativeKind(most, 7, SHARE, partial(_fill, request), partial(SwivelBlock, request), proven=False, quick=False)
+
+
+def _fill(request: Request, T: Array, tables: BatchTables) -> None:
+    """Put what is plain of targets T (m, 4, 4) [m] into their tables."""
+    known = swivel_request(request)
+    assert native is not None
+    assert known is not None
+    native.swivel_solutions(known.kernel, T, tables.q.shape[1], tables)
+
+
+class SwivelBlock(TargetBlock):
+    """The answers of the native kernel for targets that it answers, from their tables.
+
+    tables: what is listed of each, in rows of joint values, distances and angles.
     """
 
-    def __init__(self, request: Request, T: Array) -> None:
-        """Answer what is plain of targets T (m, 4, 4) [m]; the others are no part of this block."""
-        known = swivel_request(request)
-        assert native is not None
-        assert known is not None
-        most = MOST if request.most is None else request.most
-        self.plain, *tables = native.swivel_solutions(known.kernel, T, most)
-        if not self.plain.all():
-            T, tables = T[self.plain], [table[self.plain] for table in tables]
-        self.closing, self.within, self.count, *self.tables = tables
-        self.request, self.T, self.swivel = request, T, None
+    def __init__(self, request: Request, T: Array, tables: BatchTables) -> None:
+        """The answers for targets T (m, 4, 4) [m], which all are plain."""
+        self.request, self.T, self.tables, self.swivel = request, T, tables, None
+        self.closing, self.within, self.count = tables.closing, tables.within, tables.listed
         self._nearest, self._arcs = {}, {}
         none = np.zeros(len(T), dtype=np.intp)
         self.claims = Claims(none.astype(np.int8), None, none, otherwise=ALL_MOTIONS)
@@ -116,8 +127,9 @@ class SwivelBlock(TargetBlock):
     @cached_property
     def found(self) -> Found:  # type: ignore[override]
         """What is listed, target after target."""
-        listed = np.arange(self.tables[1].shape[1]) < self.count[:, None]
-        return Found(np.repeat(np.arange(len(self.T)), self.count), *(table[listed] for table in self.tables))
+        rows = np.arange(self.tables.q.shape[1]) < self.count[:, None]
+        q, position, angle = (table[rows] for table in (self.tables.q, self.tables.position, self.tables.angle))
+        return Found(np.repeat(np.arange(len(self.T)), self.count), q, position, angle)
 
     @cached_property
     def inside(self) -> Flags:  # type: ignore[override]
@@ -137,7 +149,7 @@ class SwivelBlock(TargetBlock):
         """The self-motions of target i; None where intervals of the swivel angle do not tell."""
         known = swivel_request(self.request)
         assert known is not None
-        found = known.answer(self.T[i], self.tables[1].shape[1])
+        found = known.answer(self.T[i], self.tables.q.shape[1])
         assert found is not None
         table, pieces, moving, *_ = found
         return swivel_families(known, self.T[i], table, pieces, moving)

@@ -10,6 +10,7 @@ from inverse.test_swivel import SWIVELS, random_arm, within
 from sweeps import sweep
 
 import robokin
+from robokin.inverse.batch_tables import empty_tables
 from robokin.inverse.single_answer import result_of
 from robokin.inverse.solve import _request
 from robokin.inverse.swivel_block import one_swivel_arm, solve_swivel
@@ -97,7 +98,10 @@ def test_what_is_no_arm_or_no_target_is_refused():
             native.swivel_solution(*arguments)
     for arguments in ((kernel, np.eye(4), 34), (kernel, np.eye(4)[None], 2**70)):
         with pytest.raises((ValueError, OverflowError)):
-            native.swivel_solutions(*arguments)
+            native.swivel_solutions(*arguments, empty_tables(1, 16, 7))
+    for tables in (empty_tables(2, 16, 7), empty_tables(1, 15, 7), empty_tables(1, 16, 6), (), list(range(9)), None):
+        with pytest.raises(ValueError, match="tables"):
+            native.swivel_solutions(kernel, np.eye(4)[None], 16, tables)
     with pytest.raises((TypeError, ValueError)):
         native.swivel_solution(object(), np.eye(4), 16)
     with pytest.raises(ValueError, match="do not fit"):
@@ -109,7 +113,10 @@ def test_what_is_no_arm_or_no_target_is_refused():
         )
     for T in (np.full((4, 4), np.nan), np.full((4, 4), np.inf), np.full((4, 4), 1e300)):
         assert native.swivel_solution(kernel, T, 16) is None
-        assert not native.swivel_solutions(kernel, T[None], 16)[0].any()
+        tables = empty_tables(1, 16, 7)
+        native.swivel_solutions(kernel, T[None], 16, tables)
+        assert not tables.plain.any()
+        assert np.isnan(tables.q).all()
 
 
 def test_other_arms_are_left_to_the_blocks():

@@ -337,50 +337,207 @@ static PyObject *solution(PyObject *self, PyObject *const *args, Py_ssize_t coun
     return both;
 }
 
-/* solutions(form, T, limits, wish): which targets are answered (m), how many solutions they have (m), how many are
-   listed (m), and of these, of each target in as many rows as there are roots, joint values, distances, angles and which
-   are within the limits. With limits only these are listed. */
+static const int TABLE_TYPES[TABLES] = {NPY_BOOL, NPY_INTP, NPY_INTP, NPY_INTP, NPY_INTP,
+                                        NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE, NPY_BOOL};
+
+int batch_tables(PyObject *given, npy_intp m, npy_intp rows, int joints, PyObject **made, void **at) {
+    const npy_intp shape[] = {m, rows, joints};
+    int fits = !given || (PyTuple_Check(given) && PyTuple_Size(given) == TABLES);
+    for (int i = 0; fits && i < TABLES; i++) {
+        int dimensions = i < VALUES ? 1 : i == VALUES ? 3 : 2;
+        if (!given) {
+            made[i] = PyArray_EMPTY(dimensions, shape, TABLE_TYPES[i], 0);
+            if (!made[i])
+                return 0;
+        } else {
+            made[i] = PyTuple_GetItem(given, i);
+            Py_INCREF(made[i]);
+            PyArrayObject *array = (PyArrayObject *)made[i];
+            fits = PyArray_CheckExact(made[i]) && PyArray_TYPE(array) == TABLE_TYPES[i] &&
+                   PyArray_NDIM(array) == dimensions && PyArray_ISCARRAY(array);
+            for (int k = 0; fits && k < dimensions; k++)
+                fits = PyArray_DIM(array, k) == shape[k];
+        }
+        if (fits)
+            at[i] = PyArray_DATA((PyArrayObject *)made[i]);
+    }
+    if (!fits)
+        PyErr_SetString(PyExc_ValueError, "tables of a batch do not fit its targets");
+    return fits;
+}
+
+/* Rows a target that its answer takes. */
+static int rows_of(const Form *form, const Elimination *general) {
+    return general ? general->number : form->leaves << form->levels;
+}
+
+typedef struct {
+    npy_bool *plain, *inside;
+    npy_intp *tried, *closing, *within, *listed;
+    double *q, *position, *angle;
+} Tables;
+
+/* The solutions `from` of a target as they are listed: within the limits where these count, by the greatest move from
+   the wish, at most so many of them. May be asked for rows that are where they belong. */
+static npy_intp put_in_order(const Solutions *from, const Wanted *wanted, npy_intp most, const Solutions *to,
+                             npy_intp *within) {
+    double move[MOST_CANDIDATES], q[MOST_CANDIDATES][SIX], position[MOST_CANDIDATES], angle[MOST_CANDIDATES];
+    unsigned char inside[MOST_CANDIDATES];
+    int order[MOST_CANDIDATES], count = 0;
+    for (int k = 0; k < from->listed; k++) {
+        if (wanted->limits && !from->inside[k])
+            continue;
+        int place = count++;
+        move[k] = 0.0;
+        for (int i = 0; wanted->wish && i < SIX; i++)
+            move[k] = fmax(move[k], fabs(from->q[SIX * k + i] - wanted->wish[i]));
+        for (; place && move[order[place - 1]] > move[k]; place--)
+            order[place] = order[place - 1];
+        order[place] = k;
+    }
+    *within = count;
+    if (count > most)
+        count = (int)most;
+    for (int k = 0; k < count; k++) {
+        memcpy(q[k], from->q + SIX * order[k], sizeof q[k]);
+        position[k] = from->position[order[k]];
+        angle[k] = from->angle[order[k]];
+        inside[k] = from->inside[order[k]];
+    }
+    memcpy(to->q, q, (size_t)count * sizeof q[0]);
+    memcpy(to->position, position, (size_t)count * sizeof(double));
+    memcpy(to->angle, angle, (size_t)count * sizeof(double));
+    memcpy(to->inside, inside, (size_t)count);
+    return count;
+}
+
+/* No numbers in a target's rows from `first` on. */
+static void emptied(const Solutions *rows, npy_intp first, npy_intp end) {
+    for (npy_intp k = first; k < end; k++) {
+        for (int i = 0; i < SIX; i++)
+            rows->q[SIX * k + i] = NAN;
+        rows->position[k] = rows->angle[k] = NAN;
+        rows->inside[k] = 0;
+    }
+}
+
+static void next_rows(Solutions *rows, npy_intp by) {
+    rows->q += SIX * by;
+    rows->position += by;
+    rows->angle += by;
+    rows->inside += by;
+}
+
+/* The answers for targets T (m, 4, 4) by a closed form, in tables of `rows` a target. */
+static void by_closed_form(const Form *form, const double *T, npy_intp m, Wanted *wanted, npy_intp most, npy_intp rows,
+                           const Tables *to) {
+    Solutions at = {to->q, to->position, to->angle, to->inside, 0};
+    wanted->inside_only = wanted->limits;
+    lanes.solutions(form, T, m, wanted, &at, to->closing, to->listed, to->plain);
+    memcpy(to->tried, to->closing, (size_t)m * sizeof(npy_intp));
+    memcpy(to->within, to->listed, (size_t)m * sizeof(npy_intp));
+    if (!wanted->wish && most >= rows)
+        return;
+    for (npy_intp i = 0; i < m; i++, next_rows(&at, rows)) {
+        at.listed = (int)to->listed[i];
+        to->listed[i] = put_in_order(&at, wanted, most, &at, to->within + i);
+        emptied(&at, to->listed[i], to->within[i]);
+    }
+}
+
+/* The same by elimination. */
+static void by_elimination(const Elimination *general, const Form *form, const double *T, npy_intp m,
+                           const Wanted *wanted, npy_intp most, npy_intp rows, const Tables *to) {
+    double q[MOST_CANDIDATES][SIX], position[MOST_CANDIDATES], angle[MOST_CANDIDATES];
+    unsigned char inside[MOST_CANDIDATES];
+    Solutions at = {to->q, to->position, to->angle, to->inside, 0};
+    for (npy_intp i = 0; i < m; i++, next_rows(&at, rows)) {
+        Solutions out = {q[0], position, angle, inside, 0};
+        int tried = 0, found = lanes.listed_elimination(general, form, T + 16 * i, wanted, &out, &tried);
+        int done = found == NONE_AT_ALL || (found > 0 && found <= rows);
+        if (found == NONE_AT_ALL || !done)
+            tried = found = out.listed = 0;
+        to->plain[i] = (npy_bool)done;
+        to->tried[i] = tried;
+        to->closing[i] = found;
+        to->listed[i] = put_in_order(&out, wanted, most, &at, to->within + i);
+        emptied(&at, to->listed[i], rows);
+    }
+}
+
+/* `most` of a call: how many solutions of a target are listed, all for None; -1 and an error for what is no number. */
+static npy_intp listed_at_most(PyObject *number) {
+    if (number == Py_None)
+        return MOST_CANDIDATES;
+    npy_intp most = PyNumber_AsSsize_t(number, NULL);
+    if (most < 0 && !PyErr_Occurred())
+        PyErr_SetString(PyExc_ValueError, "expected how many solutions are listed");
+    return PyErr_Occurred() ? -1 : most;
+}
+
+/* solutions(form, T, limits, wish, elimination, most, tables): fill tables (see module.h) for targets T (m, 4, 4), rigid
+   ones, by a closed form or by elimination, if that is not None. Of a form alone (form, T, limits, wish) new tables are
+   made and handed over, but for those of candidates and of what counts for the limits. */
 static PyObject *solutions(PyObject *self, PyObject *const *args, Py_ssize_t count) {
-    PyObject *copy = NULL, *made[7] = {NULL}, *all = NULL;
+    PyObject *copy = NULL, *made[TABLES] = {NULL}, *all = NULL;
     double wish[SIX];
     Wanted wanted;
+    Tables to;
+    void *at[TABLES];
+    npy_intp most = MOST_CANDIDATES;
     (void)self;
-    const Form *known = count == 4 ? wanted_of(args, &wanted, wish) : NULL;
-    PyArrayObject *T = known ? doubles(args[1], 3, &copy) : NULL;
+    const Form *known = count == 4 || count == 7 ? wanted_of(args, &wanted, wish) : NULL;
+    const Elimination *general = known && count == 7 && args[4] != Py_None ? PyCapsule_GetPointer(args[4], ELIMINATION) : NULL;
+    PyArrayObject *T = known && !PyErr_Occurred() ? doubles(args[1], 3, &copy) : NULL;
     if (!T) {
         if (!PyErr_Occurred())
-            PyErr_SetString(PyExc_TypeError, "solutions(form, T, limits, wish)");
-        return NULL;
+            PyErr_SetString(PyExc_TypeError, "solutions(form, T, limits, wish[, elimination, most, tables])");
+        goto end;
     }
     if (PyArray_NDIM(T) != 3 || PyArray_DIM(T, 1) != 4 || PyArray_DIM(T, 2) != 4) {
         PyErr_SetString(PyExc_ValueError, "expected targets (m, 4, 4)");
         goto end;
     }
-    const npy_intp shape[] = {PyArray_DIM(T, 0), known->leaves << known->levels, SIX};
-    const int types[] = {NPY_BOOL, NPY_INTP, NPY_INTP, NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE, NPY_BOOL};
-    void *at[7];
-    for (int i = 0; i < 7; i++) {
-        made[i] = PyArray_EMPTY(i < 3 ? 1 : i == 3 ? 3 : 2, shape, types[i], 0);
-        if (!made[i])
-            goto end;
-        at[i] = PyArray_DATA((PyArrayObject *)made[i]);
-    }
-    wanted.inside_only = wanted.limits;
-    Solutions out = {at[3], at[4], at[5], at[6], 0};
+    if (count == 7 && (most = listed_at_most(args[5])) < 0)
+        goto end;
+    const npy_intp m = PyArray_DIM(T, 0), rows = rows_of(known, general);
+    if (!batch_tables(count == 7 ? args[6] : NULL, m, rows, SIX, made, at))
+        goto end;
+    to = (Tables){at[PLAIN], at[INSIDE], at[TRIED], at[CLOSING], at[WITHIN],
+                  at[LISTED], at[VALUES], at[POSITION], at[ANGLES]};
     const double *from = PyArray_DATA(T);
-    if (shape[0] < LONG) {
-        lanes.solutions(known, from, shape[0], &wanted, &out, at[1], at[2], at[0]);
-    } else {
-        Py_BEGIN_ALLOW_THREADS
-        lanes.solutions(known, from, shape[0], &wanted, &out, at[1], at[2], at[0]);
-        Py_END_ALLOW_THREADS
+    PyThreadState *state = general || m >= LONG ? PyEval_SaveThread() : NULL;
+    if (general)
+        by_elimination(general, known, from, m, &wanted, most, rows, &to);
+    else
+        by_closed_form(known, from, m, &wanted, most, rows, &to);
+    if (state)
+        PyEval_RestoreThread(state);
+    if (count == 4)
+        all = PyTuple_Pack(7, made[PLAIN], made[CLOSING], made[LISTED], made[VALUES], made[POSITION], made[ANGLES],
+                           made[INSIDE]);
+    else {
+        Py_INCREF(Py_None);
+        all = Py_None;
     }
-    all = PyTuple_Pack(7, made[0], made[1], made[2], made[3], made[4], made[5], made[6]);
 end:
-    for (int i = 0; i < 7; i++)
+    for (int i = 0; i < TABLES; i++)
         Py_XDECREF(made[i]);
     Py_XDECREF(copy);
     return all;
+}
+
+/* roots(form, elimination): how many rows a target's answer takes. */
+static PyObject *roots(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    (void)self;
+    const Form *known = count == 2 ? PyCapsule_GetPointer(args[0], FORM) : NULL;
+    const Elimination *general = known && args[1] != Py_None ? PyCapsule_GetPointer(args[1], ELIMINATION) : NULL;
+    if (!known || PyErr_Occurred()) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "roots(form, elimination)");
+        return NULL;
+    }
+    return PyLong_FromLong(rows_of(known, general));
 }
 
 /* rigid(T): whether all targets of an array (..., 4, 4) are rigid poses to the last digits. */
@@ -396,8 +553,12 @@ static PyObject *rigid(PyObject *self, PyObject *const *args, Py_ssize_t count) 
     int last = PyArray_NDIM(T) - 1;
     int all = PyArray_DIM(T, last) == 4 && PyArray_DIM(T, last - 1) == 4;
     const double *from = PyArray_DATA(T);
-    for (npy_intp left = all ? PyArray_SIZE(T) / 16 : 0; all && left; left--, from += 16)
+    npy_intp left = all ? PyArray_SIZE(T) / 16 : 0;
+    PyThreadState *state = left >= LONG ? PyEval_SaveThread() : NULL;
+    for (; all && left; left--, from += 16)
         all = plain_pose(from);
+    if (state)
+        PyEval_RestoreThread(state);
     Py_XDECREF(copy);
     return PyBool_FromLong(all);
 }
@@ -406,7 +567,9 @@ PyMethodDef closed_form_methods[] = {
     {"form", (PyCFunction)(void (*)(void))form, METH_FASTCALL,
      "form(chain, links, sizes, tape, constants, leaves, levels, limits): a closed form's handle"},
     {"solution", (PyCFunction)(void (*)(void))solution, METH_FASTCALL, "solution(form, T, limits, wish, elimination)"},
-    {"solutions", (PyCFunction)(void (*)(void))solutions, METH_FASTCALL, "solutions(form, T, limits, wish)"},
+    {"solutions", (PyCFunction)(void (*)(void))solutions, METH_FASTCALL,
+     "solutions(form, T, limits, wish[, elimination, most, tables])"},
+    {"roots", (PyCFunction)(void (*)(void))roots, METH_FASTCALL, "roots(form, elimination)"},
     {"signs", (PyCFunction)(void (*)(void))signs, METH_FASTCALL,
      "signs(chain, size, tape, constants, places): a handle of the signs of postures"},
     {"sides", (PyCFunction)(void (*)(void))sides, METH_FASTCALL, "sides(signs, q): their bits"},

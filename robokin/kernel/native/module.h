@@ -82,6 +82,16 @@ PyObject *empty(PyArrayObject *q, int more, const npy_intp *shape);
 /* The number of rows of q. */
 npy_intp rows(PyArrayObject *q);
 
+/* The tables of a batch's answers: whether a target is answered (m); of each how many candidates there were, how many
+   solutions close, how many of those count for the limits, and how many are listed (m); of the listed ones, in so many
+   rows a target, joint values (m, rows, joints), distances, angles and which are within the limits (m, rows). Rows
+   beyond are no numbers. */
+enum { PLAIN, TRIED, CLOSING, WITHIN, LISTED, VALUES, POSITION, ANGLES, INSIDE, TABLES };
+
+/* Tables for m targets as a call gives them, or new ones for NULL; 0 and an error where they do not fit. made: (TABLES)
+   references, some perhaps NULL, which the caller gives back; at: (TABLES) the first entry of each. */
+int batch_tables(PyObject *given, npy_intp m, npy_intp rows, int joints, PyObject **made, void **at);
+
 /* The name of a chain's capsule. */
 #define CHAIN "robokin.chain"
 

@@ -165,19 +165,24 @@ end:
     return all;
 }
 
-static void answered(const SwivelArm *arm, const double *T, npy_intp m, int most, npy_bool *plain, npy_intp **counts,
-                     double *q, double *position, double *angle) {
+/* The answers for targets T (m, 4, 4), in tables of `most` rows: see module.h. */
+static void answered(const SwivelArm *arm, const double *T, npy_intp m, int most, void *const *at) {
     SwivelCurves curves;
     SwivelAnswer answer;
-    for (npy_intp i = 0; i < m; i++, T += 16, q += SEVEN * most, position += most, angle += most) {
+    npy_bool *plain = at[PLAIN], *inside = at[INSIDE];
+    npy_intp *tried = at[TRIED], *closing = at[CLOSING], *within = at[WITHIN], *count = at[LISTED];
+    double *q = at[VALUES], *position = at[POSITION], *angle = at[ANGLES];
+    for (npy_intp i = 0; i < m; i++, T += 16, q += SEVEN * most, position += most, angle += most, inside += most) {
         plain[i] = (npy_bool)swivel_answer(arm, lanes.poses, T, most, &curves, &answer);
         int listed = plain[i] ? answer.listed : 0;
-        counts[0][i] = plain[i] ? answer.closing : 0;
-        counts[1][i] = plain[i] ? answer.within : 0;
-        counts[2][i] = listed;
+        tried[i] = closing[i] = plain[i] ? answer.closing : 0;
+        within[i] = plain[i] ? answer.within : 0;
+        count[i] = listed;
         memcpy(q, answer.q, (size_t)listed * sizeof answer.q[0]);
         memcpy(position, answer.position, (size_t)listed * sizeof(double));
         memcpy(angle, answer.angle, (size_t)listed * sizeof(double));
+        for (int k = 0; k < most; k++)
+            inside[k] = k < listed;
         for (int k = listed; k < most; k++) {
             for (int j = 0; j < SEVEN; j++)
                 q[SEVEN * k + j] = NAN;
@@ -186,40 +191,34 @@ static void answered(const SwivelArm *arm, const double *T, npy_intp m, int most
     }
 }
 
-/* swivel_solutions(arm, T, most): which targets (m, 4, 4) are answered (m); of each how many close, are within the
-   limits and are listed (m); joint values (m, most, 7), distances and angles (m, most) of these, NaN beyond them. */
+/* swivel_solutions(arm, T, most, tables): fill tables (see module.h) for targets T (m, 4, 4), `most` rows of each. */
 static PyObject *solutions(PyObject *self, PyObject *const *args, Py_ssize_t count) {
-    PyObject *copy = NULL, *made[7] = {NULL}, *all = NULL;
+    PyObject *copy = NULL, *made[TABLES] = {NULL}, *all = NULL;
+    void *at[TABLES];
     (void)self;
-    int most = count == 3 ? most_of(args[2]) : 0;
+    int most = count == 4 ? most_of(args[2]) : 0;
     const SwivelArm *arm = most ? PyCapsule_GetPointer(args[0], SWIVEL) : NULL;
     PyArrayObject *T = arm ? doubles(args[1], 3, &copy) : NULL;
     if (!T) {
         if (!PyErr_Occurred())
-            PyErr_SetString(PyExc_TypeError, "swivel_solutions(arm, T, most)");
+            PyErr_SetString(PyExc_TypeError, "swivel_solutions(arm, T, most, tables)");
         return NULL;
     }
     if (PyArray_NDIM(T) != 3 || PyArray_DIM(T, 1) != 4 || PyArray_DIM(T, 2) != 4) {
         PyErr_SetString(PyExc_ValueError, "expected targets (m, 4, 4)");
         goto end;
     }
-    const npy_intp shape[] = {PyArray_DIM(T, 0), most, SEVEN};
-    const int types[] = {NPY_BOOL, NPY_INTP, NPY_INTP, NPY_INTP, NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE};
-    void *at[7];
-    for (int i = 0; i < 7; i++) {
-        made[i] = PyArray_EMPTY(i < 4 ? 1 : i == 4 ? 3 : 2, shape, types[i], 0);
-        if (!made[i])
-            goto end;
-        at[i] = PyArray_DATA((PyArrayObject *)made[i]);
-    }
-    npy_intp *counts[] = {at[1], at[2], at[3]};
+    const npy_intp m = PyArray_DIM(T, 0);
+    if (!batch_tables(args[3], m, most, SEVEN, made, at))
+        goto end;
     const double *from = PyArray_DATA(T);
     Py_BEGIN_ALLOW_THREADS
-    answered(arm, from, shape[0], most, at[0], counts, at[4], at[5], at[6]);
+    answered(arm, from, m, most, at);
     Py_END_ALLOW_THREADS
-    all = PyTuple_Pack(7, made[0], made[1], made[2], made[3], made[4], made[5], made[6]);
+    Py_INCREF(Py_None);
+    all = Py_None;
 end:
-    for (int i = 0; i < 7; i++)
+    for (int i = 0; i < TABLES; i++)
         Py_XDECREF(made[i]);
     Py_XDECREF(copy);
     return all;
@@ -228,6 +227,6 @@ end:
 PyMethodDef swivel_methods[] = {
     {"swivel", (PyCFunction)(void (*)(void))swivel, METH_FASTCALL, "swivel(chain, numbers, limits, equations): a handle"},
     {"swivel_solution", (PyCFunction)(void (*)(void))solution, METH_FASTCALL, "swivel_solution(arm, T, most)"},
-    {"swivel_solutions", (PyCFunction)(void (*)(void))solutions, METH_FASTCALL, "swivel_solutions(arm, T, most)"},
+    {"swivel_solutions", (PyCFunction)(void (*)(void))solutions, METH_FASTCALL, "swivel_solutions(arm, T, most, tables)"},
     {NULL, NULL, 0, NULL},
 };
