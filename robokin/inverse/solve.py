@@ -63,7 +63,7 @@ def solve_ik(
     many solutions well spread ones are listed, each the farthest from those before. `task` is the whole pose,
     the position with the z axis (`approach`), or the position alone. `most` cuts the list. `turns` also lists the
     ±360° equivalents of each solution within the limits. `hold` fixes joints (from 0) at values [rad | m]: the rest
-    is solved as the arm that it then is, and `complete` is said of that. `cores` share a batch of more than `BLOCK`
+    is solved as the arm that it then is, and `complete` is said of that. `cores` share a batch of many
     targets, all usable ones for None; the answers are the same.
     Returns a Result for one pose, a BatchResult for several. Raises InputError for what is no pose.
     Source: D. L. Pieper, The kinematics of manipulators under computer control, 1968 (three axes through a point, three

@@ -80,6 +80,7 @@ def test_any_number_of_cores_gives_the_same_bytes(name, asked, small_shares, rng
         assert content(robokin.solve_ik(robot, T, cores=cores, **asked)) == one
 
 
+@needs_kernel
 @pytest.mark.parametrize("asked", [{}, {"most": 1}, {"near": [0.5, -0.5, 1.0, 0.1, 0.2, 0.3], "most": 2}], ids=str)
 @pytest.mark.parametrize("name", ["puma560", "ur5e", "crx10ia"])
 def test_shares_are_those_of_a_target_alone(name, asked, small_shares, rng):
