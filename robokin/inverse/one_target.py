@@ -209,7 +209,7 @@ def _into_limits(arm: OneTargetArm, q: list[float], wish: list[float] | None) ->
                 fits = low <= value <= high
                 q[joint] = float(value)
         inside = inside and fits
-    return inside
+    return bool(inside)  # of numbers of numpy it is one of its own
 
 
 def _outside(arm: OneTargetArm, q: list[float], least: float) -> bool:

@@ -8,7 +8,7 @@ from kernel import test_native_descents, test_native_ways_down
 from library_entries import entry
 
 import robokin
-from robokin.inverse.elimination.native_elimination import candidates_at
+from robokin.inverse.elimination.native_elimination import candidates_at, native_elimination
 from robokin.inverse.solution_names import branch_names
 from robokin.kernel import native_kernel
 
@@ -51,7 +51,7 @@ def asked(rng):
         T = robokin.forward_kinematics(robot, q)
         robokin.jacobian(robot, np.tile(q, (100, 1)))
         for limits in (False, True):
-            robokin.solve_ik(robot, T[0], limits=limits)
+            assert robokin.solve_ik(robot, T[0], limits=limits).solutions is not None
             robokin.solve_ik(robot, T, limits=limits)
         branch_names(robot, q)
         # Who asks for one pose has taken these functions when it was imported.
@@ -62,6 +62,9 @@ def asked(rng):
     analysis = robokin.inverse.analysis.analysis_of(entry("crx10ia"))
     closing = test_native_descents.closing_at(analysis.loop, rng.uniform(-3.0, 3.0, (4, 6)))
     candidates_at(analysis.solver.first, analysis.loop, closing)
+    native_elimination(analysis.solver.first, analysis.loop, analysis.six.chain, analysis.number).many(
+        robokin.forward_kinematics(entry("crx10ia"), rng.uniform(-2.0, 2.0, (4, 6)))
+    )
     native.rows_in(b"1,a,2\n3,b,4\n", b",", bytes([1, 2, 1]))
     native.text_of_rows(rng.normal(size=(3, 4)))
     native.shortest(rng.normal(size=(3, 6, 7)), rng.normal(size=(3, 6)), 1e-7)
@@ -70,6 +73,7 @@ def asked(rng):
     robot = entry("panda")
     q = rng.uniform(-2.0, 2.0, (3, 7))
     T, left = robokin.forward_kinematics(robot, q), rng.normal(size=(3, 6))
+    robokin.follow_line(robot, np.full(7, 0.5), robokin.forward_kinematics(robot, np.full(7, 0.6)), 50, limits=False)
     arm = native_kernel.handle(test_native_descents.chain_of(robot))
     native.finely_closed(arm, T, q, left, 1.0, 6, 0.1, 1e-9, 1e-14)
     native.regular(test_native_descents.native_loop(analysis.loop), rng.normal(size=(3, 12)), np.full(3, 0.1))
@@ -119,7 +123,7 @@ def test_hostile_calls_are_answered_or_refused(good, rng, instructions):
             told[place] = other(told[place], rng, handles)
         try:
             getattr(native, name)(*told[: len(told) - (rng.random() < 0.02)])
-        except (TypeError, ValueError, OverflowError) as error:
+        except (TypeError, ValueError, OverflowError, IndexError) as error:
             assert str(error)
             refusals += 1
     assert 250 < refusals < 2750
