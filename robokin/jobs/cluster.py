@@ -8,6 +8,7 @@ Dask and its scheduler come with `robokin[cluster]`; nothing of them is loaded b
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import logging
 import os
@@ -17,8 +18,10 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError, Future, InvalidStateError
 from importlib import import_module
 from typing import Any
+from weakref import WeakSet
 
 from robokin.errors import InputError, shown
 from robokin.jobs.executors import lent
@@ -194,8 +197,9 @@ class _ClusterExecutor:
     """Takes tasks for a cluster; each brings the versions along with which its answer would be the same."""
 
     def __init__(self, client: Any) -> None:
-        self.client, self.executor = client, client.get_executor(pure=False)
-        self.versions = versions()
+        self.client, self.versions = client, versions()
+        self.given: WeakSet[Any] = WeakSet()
+        self.giving = threading.Lock()
         self.alone, self.over = False, threading.Event()
         threading.Thread(target=self._look_for_workers, daemon=True).start()
 
@@ -204,13 +208,18 @@ class _ClusterExecutor:
         if self.alone:
             raise WorkerError(_ALONE.format(LEFT_ALONE))
         call = pickle.dumps(_Call(self.versions, fn, arguments))
-        return _ClusterPromise(self, self.executor.submit(pickle.loads, call))
+        task = self.client.submit(pickle.loads, call, pure=False)
+        with self.giving:
+            self.given.add(task)
+        return _ClusterPromise(self, task)
 
     def close(self) -> None:
         """What has not begun is left out."""
         self.over.set()
+        with self.giving:
+            tasks = [*self.given]
         with contextlib.suppress(Exception):
-            self.executor.shutdown(wait=False)
+            self.client.cancel(tasks)
 
     def _look_for_workers(self) -> None:
         """Give the tasks up when there has been no worker for a long time: Dask would wait for ever."""
@@ -237,15 +246,32 @@ class _Call:
 
 
 class _ClusterPromise:
-    """A task of a cluster; what went wrong with the cluster itself is said in sentences."""
+    """A task of a cluster; what went wrong with the cluster itself is said in sentences.
 
-    def __init__(self, executor: _ClusterExecutor, promise: Any) -> None:
-        self.executor, self.promise = executor, promise
+    Dask's own executor takes a result that is there for an error if the worker that has it is lost in that moment.
+    """
+
+    def __init__(self, executor: _ClusterExecutor, task: Any) -> None:
+        self.executor, self.task = executor, task
+        self.promise: Future[Any] = Future()
+        executor.client.loop.add_callback(self._brought)
+
+    async def _brought(self) -> None:
+        """Have the result here as soon as there is one: what a worker holds is lost with it."""
+        try:
+            result = await self.task
+        except (asyncio.CancelledError, CancelledError):
+            self.promise.cancel()
+            self.promise.set_running_or_notify_cancel()
+        except Exception as error:
+            with contextlib.suppress(InvalidStateError):  # cancelled meanwhile
+                self.promise.set_exception(error)
+        else:
+            with contextlib.suppress(InvalidStateError):
+                self.promise.set_result(result)
 
     def result(self) -> Any:
         """What the function gave, or its error. Raises WorkerError where the cluster has lost it for good."""
-        from concurrent.futures import CancelledError
-
         try:
             return self.promise.result()
         except CancelledError:
@@ -265,7 +291,8 @@ class _ClusterPromise:
 
     def cancel(self) -> None:
         """Leave the task out if it has not begun."""
-        self.promise.cancel()
+        if self.promise.cancel():
+            self.task.cancel()
 
     def add_done_callback(self, fn: Callable[[Any], object], /) -> None:
         """Have a function called when the task is over."""
