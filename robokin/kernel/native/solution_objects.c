@@ -156,7 +156,7 @@ static newfunc maker_of(PyObject *type) {
     return make;
 }
 
-/* solution_objects(class, name, table, joints, free, rows, within, pattern, first): a tuple. */
+/* solution_objects(kind, name, table, joints, free, rows, within, pattern, first): a tuple. */
 static PyObject *solution_objects(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     Asked asked = {0};
     PyObject *made = NULL, *nothing = NULL;
@@ -164,7 +164,7 @@ static PyObject *solution_objects(PyObject *self, PyObject *const *args, Py_ssiz
     (void)self;
     if (count != 9) {
         PyErr_SetString(PyExc_TypeError,
-                        "solution_objects(class, name, table, joints, free, rows, within, pattern, first)");
+                        "solution_objects(kind, name, table, joints, free, rows, within, pattern, first)");
         return NULL;
     }
     /* Numbers first: their methods may change what else is given. */
@@ -194,6 +194,6 @@ static PyObject *solution_objects(PyObject *self, PyObject *const *args, Py_ssiz
 
 PyMethodDef solution_object_methods[] = {
     {"solution_objects", (PyCFunction)(void (*)(void))solution_objects, METH_FASTCALL,
-     "solution_objects(class, name, table, joints, free, rows, within, pattern, first): a tuple of solutions"},
+     "solution_objects(kind, name, table, joints, free, rows, within, pattern, first): a tuple of solutions"},
     {NULL, NULL, 0, NULL},
 };
