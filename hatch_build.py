@@ -29,6 +29,7 @@ KERNEL = f"robokin/kernel/_native.{'pyd' if WINDOWS else 'abi3.so'}"
 # The sources that speak with Python, and those that do not.
 MODULE = [
     "module.c",
+    "arguments.c",
     "closed_forms.c",
     "descents.c",
     "elimination.c",

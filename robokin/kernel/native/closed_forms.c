@@ -80,6 +80,39 @@ static int taped(Form *form, const double *from) {
     return 1;
 }
 
+/* Whether a tape and its constants are within the memory for them. */
+static int has_room(PyArrayObject *tape, PyArrayObject *constants, int inputs) {
+    npy_intp steps = PyArray_SIZE(tape) / WIDTH;
+    return steps <= MOST_STEPS && PyArray_SIZE(tape) == WIDTH * steps && PyArray_SIZE(constants) <= MOST_SLOTS - inputs;
+}
+
+/* A new form of a chain, with constants that have room and steps that are `taped` once its levels are known. */
+static Form *new_form(const Chain *chain, PyArrayObject *tape, PyArrayObject *constants, int inputs) {
+    npy_intp steps = PyArray_SIZE(tape) / WIDTH;
+    Form *made = PyMem_Malloc(sizeof(Form) + (size_t)steps * sizeof(Step));
+    if (!made) {
+        PyErr_NoMemory();
+        return NULL;
+    }
+    memset(made, 0, sizeof(Form));
+    made->chain = *chain;
+    made->inputs = inputs;
+    made->constants = (int)PyArray_SIZE(constants);
+    made->steps = (int)steps;
+    memcpy(made->value, PyArray_DATA(constants), (size_t)made->constants * sizeof(double));
+    return made;
+}
+
+/* The handle of a form whose tape and leaves fit; one that does not, or gets no handle, is given back. */
+static PyObject *handle_of(Form *made, int fits, const char *name, PyCapsule_Destructor freed) {
+    PyObject *capsule = fits ? PyCapsule_New(made, name, freed) : NULL;
+    if (!fits)
+        PyErr_SetString(PyExc_ValueError, "a tape asks for what is not there");
+    if (!capsule)
+        PyMem_Free(made);
+    return capsule;
+}
+
 static void columns_of(const double *T, double *out) {
     for (int c = 0; c < 4; c++)
         for (int r = 0; r < 3; r++)
@@ -106,37 +139,27 @@ static PyObject *form(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     sizes = limits ? doubles(args[2], 1, &copies[5]) : NULL;
     if (!sizes)
         goto end;
-    npy_intp steps = PyArray_SIZE(tape) / WIDTH, many = PyArray_SIZE(constants), roots = PyArray_SIZE(leaves) / (2 * SIX);
+    npy_intp roots = PyArray_SIZE(leaves) / (2 * SIX);
     const double *size = PyArray_DATA(sizes);
     int high = whole(levels, MOST_LEVELS + 1), turning = chain->n == SIX;
     for (int i = 0; turning && i < SIX; i++)
         turning = chain->revolute[i];
-    if (!turning || PyArray_SIZE(links) != 32 || steps > MOST_STEPS || PyArray_SIZE(tape) != WIDTH * steps ||
-        many > MOST_SLOTS - ROWS || roots < 1 || high < 0 || roots > MOST_ROOTS >> high ||
-        PyArray_SIZE(leaves) != 2 * SIX * roots || PyArray_SIZE(limits) != 7 * SIX || PyArray_SIZE(sizes) != 2 ||
+    if (!turning || PyArray_SIZE(links) != 32 || !has_room(tape, constants, ROWS) || roots < 1 || high < 0 ||
+        roots > MOST_ROOTS >> high || PyArray_SIZE(leaves) != 2 * SIX * roots || PyArray_SIZE(limits) != 7 * SIX || PyArray_SIZE(sizes) != 2 ||
         !(size[0] > 0.0 && size[1] > 0.0)) {
         PyErr_SetString(PyExc_ValueError, "arrays of a closed form do not fit each other");
         goto end;
     }
-    Form *made = PyMem_Malloc(sizeof(Form) + (size_t)steps * sizeof(Step));
-    if (!made) {
-        PyErr_NoMemory();
+    Form *made = new_form(chain, tape, constants, ROWS);
+    if (!made)
         goto end;
-    }
-    memset(made, 0, sizeof(Form));
-    made->chain = *chain;
     made->unit = size[0];
     made->size = size[1];
     columns_of(PyArray_DATA(links), made->first);
     columns_of((const double *)PyArray_DATA(links) + 16, made->last);
-    made->inputs = ROWS;
     made->levels = high;
     made->leaves = (int)roots;
-    made->constants = (int)many;
-    made->steps = (int)steps;
-    const double *value = PyArray_DATA(constants), *place = PyArray_DATA(leaves), *bound = PyArray_DATA(limits);
-    for (int k = 0; k < many; k++)
-        made->value[k] = value[k];
+    const double *place = PyArray_DATA(leaves), *bound = PyArray_DATA(limits);
     int fits = taped(made, PyArray_DATA(tape));
     for (int k = 0; k < roots; k++)
         for (int i = 0; i < SIX; i++, place += 2)
@@ -150,15 +173,9 @@ static PyObject *form(PyObject *self, PyObject *const *args, Py_ssize_t count) {
         made->wide_low[i] = bound[5];
         made->wide_high[i] = bound[6];
     }
-    if (fits)
-        capsule = PyCapsule_New(made, FORM, freed_form);
-    else
-        PyErr_SetString(PyExc_ValueError, "a tape asks for what is not there");
-    if (!capsule)
-        PyMem_Free(made);
+    capsule = handle_of(made, fits, FORM, freed_form);
 end:
-    for (int i = 0; i < 6; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 6);
     return capsule;
 }
 
@@ -179,39 +196,24 @@ static PyObject *signs(PyObject *self, PyObject *const *args, Py_ssize_t count) 
     places = constants ? doubles(args[4], 2, &copies[2]) : NULL;
     if (!places)
         goto end;
-    npy_intp steps = PyArray_SIZE(tape) / WIDTH, many = PyArray_SIZE(constants), bits = PyArray_SIZE(places) / 2;
-    if (chain->n != SIX || steps > MOST_STEPS || PyArray_SIZE(tape) != WIDTH * steps || many > MOST_SLOTS - AXES ||
-        bits > SIX || PyArray_SIZE(places) != 2 * bits || !(size > 0.0)) {
+    npy_intp bits = PyArray_SIZE(places) / 2;
+    if (chain->n != SIX || !has_room(tape, constants, AXES) || bits > SIX || PyArray_SIZE(places) != 2 * bits ||
+        !(size > 0.0)) {
         PyErr_SetString(PyExc_ValueError, "arrays of signs do not fit each other");
         goto end;
     }
-    Form *made = PyMem_Malloc(sizeof(Form) + (size_t)steps * sizeof(Step));
-    if (!made) {
-        PyErr_NoMemory();
+    Form *made = new_form(chain, tape, constants, AXES);
+    if (!made)
         goto end;
-    }
-    memset(made, 0, sizeof(Form));
-    made->chain = *chain;
     made->size = size;
-    made->inputs = AXES;
     made->leaves = (int)bits;
-    made->constants = (int)many;
-    made->steps = (int)steps;
-    const double *value = PyArray_DATA(constants), *place = PyArray_DATA(places);
-    for (int k = 0; k < many; k++)
-        made->value[k] = value[k];
+    const double *place = PyArray_DATA(places);
     int fits = taped(made, PyArray_DATA(tape));
     for (int k = 0; k < bits; k++, place += 2)
         fits = fits && placed(place, &made->leaf[0][k]) && made->leaf[0][k].level == 0;
-    if (fits)
-        capsule = PyCapsule_New(made, SIGNS, freed_signs);
-    else
-        PyErr_SetString(PyExc_ValueError, "a tape asks for what is not there");
-    if (!capsule)
-        PyMem_Free(made);
+    capsule = handle_of(made, fits, SIGNS, freed_signs);
 end:
-    for (int i = 0; i < 3; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 3);
     return capsule;
 }
 
@@ -337,35 +339,6 @@ static PyObject *solution(PyObject *self, PyObject *const *args, Py_ssize_t coun
     return both;
 }
 
-static const int TABLE_TYPES[TABLES] = {NPY_BOOL, NPY_INTP, NPY_INTP, NPY_INTP, NPY_INTP,
-                                        NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE, NPY_BOOL};
-
-int batch_tables(PyObject *given, npy_intp m, npy_intp rows, int joints, PyObject **made, void **at) {
-    const npy_intp shape[] = {m, rows, joints};
-    int fits = !given || (PyTuple_Check(given) && PyTuple_Size(given) == TABLES);
-    for (int i = 0; fits && i < TABLES; i++) {
-        int dimensions = i < VALUES ? 1 : i == VALUES ? 3 : 2;
-        if (!given) {
-            made[i] = PyArray_EMPTY(dimensions, shape, TABLE_TYPES[i], 0);
-            if (!made[i])
-                return 0;
-        } else {
-            made[i] = PyTuple_GetItem(given, i);
-            Py_INCREF(made[i]);
-            PyArrayObject *array = (PyArrayObject *)made[i];
-            fits = PyArray_CheckExact(made[i]) && PyArray_TYPE(array) == TABLE_TYPES[i] &&
-                   PyArray_NDIM(array) == dimensions && PyArray_ISCARRAY(array);
-            for (int k = 0; fits && k < dimensions; k++)
-                fits = PyArray_DIM(array, k) == shape[k];
-        }
-        if (fits)
-            at[i] = PyArray_DATA((PyArrayObject *)made[i]);
-    }
-    if (!fits)
-        PyErr_SetString(PyExc_ValueError, "tables of a batch do not fit its targets");
-    return fits;
-}
-
 /* Rows a target that its answer takes. */
 static int rows_of(const Form *form, const Elimination *general) {
     return general ? general->number : form->leaves << form->levels;
@@ -488,24 +461,20 @@ static PyObject *solutions(PyObject *self, PyObject *const *args, Py_ssize_t cou
     (void)self;
     const Form *known = count == 4 || count == 7 ? wanted_of(args, &wanted, wish) : NULL;
     const Elimination *general = known && count == 7 && args[4] != Py_None ? PyCapsule_GetPointer(args[4], ELIMINATION) : NULL;
-    PyArrayObject *T = known && !PyErr_Occurred() ? doubles(args[1], 3, &copy) : NULL;
-    if (!T) {
+    npy_intp m = 0;
+    const double *from = known && !PyErr_Occurred() ? targets(args[1], &m, &copy) : NULL;
+    if (!from) {
         if (!PyErr_Occurred())
             PyErr_SetString(PyExc_TypeError, "solutions(form, T, limits, wish[, elimination, most, tables])");
         goto end;
     }
-    if (PyArray_NDIM(T) != 3 || PyArray_DIM(T, 1) != 4 || PyArray_DIM(T, 2) != 4) {
-        PyErr_SetString(PyExc_ValueError, "expected targets (m, 4, 4)");
-        goto end;
-    }
     if (count == 7 && (most = listed_at_most(args[5])) < 0)
         goto end;
-    const npy_intp m = PyArray_DIM(T, 0), rows = rows_of(known, general);
+    const npy_intp rows = rows_of(known, general);
     if (!batch_tables(count == 7 ? args[6] : NULL, m, rows, SIX, made, at))
         goto end;
     to = (Tables){at[PLAIN], at[INSIDE], at[TRIED], at[CLOSING], at[WITHIN],
                   at[LISTED], at[VALUES], at[POSITION], at[ANGLES]};
-    const double *from = PyArray_DATA(T);
     PyThreadState *state = general || m >= LONG ? PyEval_SaveThread() : NULL;
     if (general)
         by_elimination(general, known, from, m, &wanted, most, rows, &to);
@@ -521,8 +490,7 @@ static PyObject *solutions(PyObject *self, PyObject *const *args, Py_ssize_t cou
         all = Py_None;
     }
 end:
-    for (int i = 0; i < TABLES; i++)
-        Py_XDECREF(made[i]);
+    let_go(made, TABLES);
     Py_XDECREF(copy);
     return all;
 }

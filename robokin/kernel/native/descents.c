@@ -41,14 +41,6 @@ static int are_within(const double *numbers, npy_intp m, double most) {
     return 1;
 }
 
-/* A new array (m, width), or (m,) where the width is 0. */
-static PyObject *made(npy_intp m, npy_intp width) {
-    const npy_intp shape[] = {m, width};
-    return PyArray_EMPTY(width ? 2 : 1, shape, NPY_DOUBLE, 0);
-}
-
-static double *numbers_of(PyObject *array) { return PyArray_DATA((PyArrayObject *)array); }
-
 /* Newton's steps on a loop, of real values or complex ones. */
 static PyObject *on_loop(PyObject *const *args, int is_complex) {
     PyObject *copies[2] = {NULL, NULL}, *values = NULL, *off = NULL, *both = NULL;
@@ -58,31 +50,32 @@ static PyObject *on_loop(PyObject *const *args, int is_complex) {
     npy_intp m = -1;
     if (!known)
         return NULL;
-    const double *closing = table(args[1], is_complex ? 32 : 16, &m, &copies[0]);
-    const double *from = closing ? table(args[2], is_complex ? 12 : 6, &m, &copies[1]) : NULL;
+    const Given given[] = {{1, is_complex ? 32 : 16, &m}, {2, is_complex ? 12 : 6, &m}};
+    const double *from[2];
+    if (!all_tables(args, given, 2, from, copies))
+        goto end;
     for (int i = 0; !is_complex && i < 6; i++)
-        if (from && !known->revolute[i]) {
+        if (!known->revolute[i]) {
             PyErr_SetString(PyExc_ValueError, "expected a loop of turning joints");
             goto end;
         }
-    values = from ? made(m, is_complex ? 12 : 6) : NULL;
-    off = values ? made(m, is_complex ? 0 : 2) : NULL;
+    values = new_numbers(m, is_complex ? 12 : 6);
+    off = values ? new_numbers(m, is_complex ? 0 : 2) : NULL;
     if (!off)
         goto end;
     double *to = numbers_of(values), *left = numbers_of(off);
     Py_BEGIN_ALLOW_THREADS
-    memcpy(to, from, (size_t)m * (is_complex ? 12 : 6) * sizeof(double));
+    memcpy(to, from[1], (size_t)m * (is_complex ? 12 : 6) * sizeof(double));
     if (is_complex)
-        lanes.complex_refined(known, closing, to, m, steps, longest, left);
+        lanes.complex_refined(known, from[0], to, m, steps, longest, left);
     else
-        lanes.refined(known, closing, to, m, steps, left);
+        lanes.refined(known, from[0], to, m, steps, left);
     Py_END_ALLOW_THREADS
     both = PyTuple_Pack(2, values, off);
 end:
     Py_XDECREF(values);
     Py_XDECREF(off);
-    Py_XDECREF(copies[0]);
-    Py_XDECREF(copies[1]);
+    let_go(copies, 2);
     return both;
 }
 
@@ -103,7 +96,6 @@ static PyObject *complex_refined(PyObject *self, PyObject *const *args, Py_ssize
 }
 
 static PyObject *tracked(PyObject *self, PyObject *const *args, Py_ssize_t count) {
-    static const npy_intp widths[] = {14, 14, 2, 12};
     const double *from[4];
     PyObject *copies[4] = {NULL, NULL, NULL, NULL}, *values = NULL, *left = NULL, *both = NULL;
     (void)self;
@@ -115,11 +107,11 @@ static PyObject *tracked(PyObject *self, PyObject *const *args, Py_ssize_t count
     npy_intp m = -1;
     if (!known)
         return NULL;
-    for (int i = 0; i < 4; i++)
-        if (!(from[i] = table(args[1 + i], widths[i], &m, &copies[i])))
-            goto end;
-    values = made(m, 12);
-    left = values ? made(m, 3) : NULL;
+    const Given given[] = {{1, 14, &m}, {2, 14, &m}, {3, 2, &m}, {4, 12, &m}};
+    if (!all_tables(args, given, 4, from, copies))
+        goto end;
+    values = new_numbers(m, 12);
+    left = values ? new_numbers(m, 3) : NULL;
     if (!left)
         goto end;
     double *to = numbers_of(values), *ends = numbers_of(left);
@@ -129,8 +121,7 @@ static PyObject *tracked(PyObject *self, PyObject *const *args, Py_ssize_t count
     Py_END_ALLOW_THREADS
     both = PyTuple_Pack(2, values, left);
 end:
-    for (int i = 0; i < 4; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 4);
     Py_XDECREF(values);
     Py_XDECREF(left);
     return both;
@@ -159,23 +150,20 @@ static PyObject *descended(PyObject *self, PyObject *const *args, Py_ssize_t cou
     npy_intp m = -1, n = known ? known->n : 0;
     if (!known)
         return NULL;
-    const double *T = table(args[1], 16, &m, &copies[0]), *far = T ? table(args[2], 1, &m, &copies[1]) : NULL;
-    const double *from = far ? table(args[3], n, &m, &copies[2]) : NULL;
-    const double *low = from ? table(args[5], 1, &n, &copies[3]) : NULL;
-    const double *high = low ? table(args[6], 1, &n, &copies[4]) : NULL;
-    x = high ? made(m, n) : NULL;
-    error = x ? made(m, 6) : NULL;
+    const Given given[] = {{1, 16, &m}, {2, 1, &m}, {3, n, &m}, {5, 1, &n}, {6, 1, &n}};
+    const double *from[5];
+    x = all_tables(args, given, 5, from, copies) ? new_numbers(m, n) : NULL;
+    error = x ? new_numbers(m, 6) : NULL;
     if (!error)
         goto end;
     double *to = numbers_of(x), *left = numbers_of(error);
     Py_BEGIN_ALLOW_THREADS
-    memcpy(to, from, (size_t)(m * n) * sizeof(double));
-    lanes.descended(known, T, far, to, m, size, low, high, steps, left);
+    memcpy(to, from[2], (size_t)(m * n) * sizeof(double));
+    lanes.descended(known, from[0], from[1], to, m, size, from[3], from[4], steps, left);
     Py_END_ALLOW_THREADS
     both = PyTuple_Pack(2, x, error);
 end:
-    for (int i = 0; i < 5; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 5);
     Py_XDECREF(x);
     Py_XDECREF(error);
     return both;
@@ -199,12 +187,11 @@ static PyObject *shortest(PyObject *self, PyObject *const *args, Py_ssize_t coun
         PyErr_SetString(PyExc_ValueError, "arrays of a descent do not fit each other");
         goto end;
     }
-    dx = made(m, n);
+    dx = new_numbers(m, n);
     if (dx)
         lanes.shortest_of(PyArray_DATA(A), PyArray_DATA(b), m, (int)rows, (int)n, zero, numbers_of(dx));
 end:
-    Py_XDECREF(copies[0]);
-    Py_XDECREF(copies[1]);
+    let_go(copies, 2);
     return dx;
 }
 
@@ -216,29 +203,28 @@ static PyObject *finely_closed(PyObject *self, PyObject *const *args, Py_ssize_t
         return NULL;
     }
     int steps = steps_of(args[5]);
-    double given[4];
+    double told[4];
     static const int places[] = {4, 6, 7, 8};
     for (int i = 0; i < 4 && !PyErr_Occurred(); i++)
-        given[i] = PyFloat_AsDouble(args[places[i]]);
+        told[i] = PyFloat_AsDouble(args[places[i]]);
     const Chain *known = PyErr_Occurred() ? NULL : moved_chain(args[0]);
     npy_intp m = -1, n = known ? known->n : 0;
     if (!known)
         return NULL;
-    const double *T = table(args[1], 16, &m, &copies[0]), *from = T ? table(args[2], n, &m, &copies[1]) : NULL;
-    const double *off = from ? table(args[3], 6, &m, &copies[2]) : NULL;
-    q = off ? made(m, n) : NULL;
-    error = q ? made(m, 6) : NULL;
+    const Given given[] = {{1, 16, &m}, {2, n, &m}, {3, 6, &m}};
+    const double *from[3];
+    q = all_tables(args, given, 3, from, copies) ? new_numbers(m, n) : NULL;
+    error = q ? new_numbers(m, 6) : NULL;
     if (!error)
         goto end;
-    memcpy(numbers_of(q), from, (size_t)(m * n) * sizeof(double));
-    memcpy(numbers_of(error), off, (size_t)(m * 6) * sizeof(double));
+    memcpy(numbers_of(q), from[1], (size_t)(m * n) * sizeof(double));
+    memcpy(numbers_of(error), from[2], (size_t)(m * 6) * sizeof(double));
     Py_BEGIN_ALLOW_THREADS
-    lanes.finely_closed(known, T, numbers_of(q), m, given[0], steps, given[1], given[2], given[3], numbers_of(error));
+    lanes.finely_closed(known, from[0], numbers_of(q), m, told[0], steps, told[1], told[2], told[3], numbers_of(error));
     Py_END_ALLOW_THREADS
     both = PyTuple_Pack(2, q, error);
 end:
-    for (int i = 0; i < 3; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 3);
     Py_XDECREF(q);
     Py_XDECREF(error);
     return both;
@@ -262,23 +248,21 @@ static PyObject *followed_rows(PyObject *self, PyObject *const *args, Py_ssize_t
         PyErr_SetString(PyExc_ValueError, "expected fewer open joints");
         return NULL;
     }
-    const double *T = table(args[1], 16, &m, &copies[0]), *from = T ? table(args[2], n, &one, &copies[1]) : NULL;
-    const double *ahead = from ? table(args[3], n, &one, &copies[2]) : NULL;
-    const double *limits = ahead ? table(args[4], n, &four, &copies[3]) : NULL;
-    rows = limits ? made(m, n) : NULL;
-    last = rows ? made(1, n) : NULL;
+    const Given given[] = {{1, 16, &m}, {2, n, &one}, {3, n, &one}, {4, n, &four}};
+    const double *from[4];
+    rows = all_tables(args, given, 4, from, copies) ? new_numbers(m, n) : NULL;
+    last = rows ? new_numbers(1, n) : NULL;
     if (!last)
         goto end;
     npy_intp followed = 0;
-    memcpy(numbers_of(last), ahead, (size_t)n * sizeof(double));
+    memcpy(numbers_of(last), from[2], (size_t)n * sizeof(double));
     double *to = numbers_of(rows), *moved = numbers_of(last);
     Py_BEGIN_ALLOW_THREADS
-    followed = lanes.followed_rows(known, T, m, size, opened, limits, from, moved, spare, listed, to);
+    followed = lanes.followed_rows(known, from[0], m, size, opened, from[3], from[1], moved, spare, listed, to);
     Py_END_ALLOW_THREADS
     all = Py_BuildValue("nOO", (Py_ssize_t)followed, rows, last);
 end:
-    for (int i = 0; i < 4; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 4);
     Py_XDECREF(rows);
     Py_XDECREF(last);
     return all;
@@ -298,29 +282,27 @@ static PyObject *gone_down(PyObject *self, PyObject *const *args, Py_ssize_t cou
     npy_intp m = -1, n = known ? known->n : 0;
     if (!known)
         return NULL;
-    const double *T = table(args[1], 12, &m, &copies[0]), *from = T ? table(args[2], n, &m, &copies[1]) : NULL;
-    /* Limits of each, or one row for all. */
-    npy_intp bounds = -1;
-    const double *low = from ? table(args[4], n, &bounds, &copies[2]) : NULL;
-    const double *high = low ? table(args[5], n, &bounds, &copies[3]) : NULL;
-    if (high && bounds != 1 && bounds != m) {
+    npy_intp bounds = -1; /* limits of each, or one row for all */
+    const Given given[] = {{1, 12, &m}, {2, n, &m}, {4, n, &bounds}, {5, n, &bounds}, {6, 1, &m}};
+    const double *from[5];
+    if (!all_tables(args, given, 5, from, copies))
+        goto end;
+    if (bounds != 1 && bounds != m) {
         PyErr_SetString(PyExc_ValueError, "arrays of a descent do not fit each other");
         goto end;
     }
-    const double *weight = high ? table(args[6], 1, &m, &copies[4]) : NULL;
-    x = weight ? made(m, n) : NULL;
-    parts = x ? made(m, 2) : NULL;
+    x = new_numbers(m, n);
+    parts = x ? new_numbers(m, 2) : NULL;
     if (!parts)
         goto end;
     double *to = numbers_of(x), *left = numbers_of(parts);
     Py_BEGIN_ALLOW_THREADS
-    memcpy(to, from, (size_t)(m * n) * sizeof(double));
-    lanes.gone_down(known, T, to, m, size, low, high, bounds == m, weight, steps, still, least, left);
+    memcpy(to, from[1], (size_t)(m * n) * sizeof(double));
+    lanes.gone_down(known, from[0], to, m, size, from[2], from[3], bounds == m, from[4], steps, still, least, left);
     Py_END_ALLOW_THREADS
     both = PyTuple_Pack(2, x, parts);
 end:
-    for (int i = 0; i < 5; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 5);
     Py_XDECREF(x);
     Py_XDECREF(parts);
     return both;
@@ -339,22 +321,20 @@ static PyObject *turned(PyObject *self, PyObject *const *args, Py_ssize_t count)
     npy_intp m = -1, n = known ? known->n : 0;
     if (!known)
         return NULL;
-    const double *T = table(args[1], 12, &m, &copies[0]), *from = T ? table(args[2], n, &m, &copies[1]) : NULL;
-    const double *low = from ? table(args[4], n, &m, &copies[2]) : NULL;
-    const double *high = low ? table(args[5], n, &m, &copies[3]) : NULL;
-    x = high ? made(m, n) : NULL;
-    parts = x ? made(m, 2) : NULL;
+    const Given given[] = {{1, 12, &m}, {2, n, &m}, {4, n, &m}, {5, n, &m}};
+    const double *from[4];
+    x = all_tables(args, given, 4, from, copies) ? new_numbers(m, n) : NULL;
+    parts = x ? new_numbers(m, 2) : NULL;
     if (!parts)
         goto end;
     double *to = numbers_of(x), *left = numbers_of(parts);
     Py_BEGIN_ALLOW_THREADS
-    memcpy(to, from, (size_t)(m * n) * sizeof(double));
-    lanes.turned(known, T, to, m, size, low, high, steps, left);
+    memcpy(to, from[1], (size_t)(m * n) * sizeof(double));
+    lanes.turned(known, from[0], to, m, size, from[2], from[3], steps, left);
     Py_END_ALLOW_THREADS
     both = PyTuple_Pack(2, x, parts);
 end:
-    for (int i = 0; i < 4; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 4);
     Py_XDECREF(x);
     Py_XDECREF(parts);
     return both;
@@ -378,26 +358,24 @@ static PyObject *corrected(PyObject *self, PyObject *const *args, Py_ssize_t cou
         PyErr_SetString(PyExc_ValueError, "expected fewer normals");
         return NULL;
     }
-    const double *T = table(args[1], 16, &m, &copies[0]), *normals = T ? table(args[2], extra * n, &m, &copies[1]) : NULL;
-    const double *most = normals ? table(args[4], 1, &m, &copies[2]) : NULL;
-    const double *from = most ? table(args[5], n, &m, &copies[3]) : NULL;
-    if (from && !are_within(most, m, MOST_CORRECTION_STEPS))
+    const Given given[] = {{1, 16, &m}, {2, extra * n, &m}, {4, 1, &m}, {5, n, &m}};
+    const double *from[4];
+    if (!all_tables(args, given, 4, from, copies) || !are_within(from[2], m, MOST_CORRECTION_STEPS))
         goto end;
-    x = from ? made(m, n) : NULL;
-    off = x ? made(m, 0) : NULL;
+    x = new_numbers(m, n);
+    off = x ? new_numbers(m, 0) : NULL;
     const npy_intp shape[] = {m, 6, n};
     J = off ? PyArray_EMPTY(3, shape, NPY_DOUBLE, 0) : NULL;
     if (!J)
         goto end;
     double *to = numbers_of(x), *left = numbers_of(off), *jacobians = numbers_of(J);
     Py_BEGIN_ALLOW_THREADS
-    memcpy(to, from, (size_t)(m * n) * sizeof(double));
-    lanes.corrected(known, T, normals, extra, most, to, m, size, settled, zero, left, jacobians);
+    memcpy(to, from[3], (size_t)(m * n) * sizeof(double));
+    lanes.corrected(known, from[0], from[1], extra, from[2], to, m, size, settled, zero, left, jacobians);
     Py_END_ALLOW_THREADS
     all = PyTuple_Pack(3, x, off, J);
 end:
-    for (int i = 0; i < 4; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 4);
     Py_XDECREF(x);
     Py_XDECREF(off);
     Py_XDECREF(J);
@@ -428,16 +406,19 @@ static PyObject *advanced(PyObject *self, PyObject *const *args, Py_ssize_t coun
     }
     F.n = (int)n;
     const npy_intp wide = 3 * n + FRONT_NUMBERS, point = 1 + 2 * n;
-    F.targets = table(args[1], 16, &m, &copies[0]);
-    F.steps_of = F.targets ? table(args[2], 1, &m, &copies[1]) : NULL;
-    F.low = F.steps_of ? table(args[3], n, &m, &copies[2]) : NULL;
-    F.high = F.low ? table(args[4], n, &m, &copies[3]) : NULL;
-    const double *from = F.high ? table(args[5], wide, &m, &copies[4]) : NULL;
-    npy_intp half = m / 2;
-    const double *closed = from ? table(args[6], 1, &half, &copies[5]) : NULL;
-    const double *left = closed ? table(args[7], 1, &half, &copies[6]) : NULL;
-    if (!left)
+    const Given of_fronts[] = {{1, 16, &m}, {2, 1, &m}, {3, n, &m}, {4, n, &m}, {5, wide, &m}};
+    const double *from[5], *of_curves[2];
+    if (!all_tables(args, of_fronts, 5, from, copies))
         goto end;
+    npy_intp half = m / 2;
+    const Given rest[] = {{6, 1, &half}, {7, 1, &half}};
+    if (!all_tables(args, rest, 2, of_curves, copies + 5))
+        goto end;
+    const double *closed = of_curves[0], *left = of_curves[1];
+    F.targets = from[0];
+    F.steps_of = from[1];
+    F.low = from[2];
+    F.high = from[3];
     if (!are_within(left, half, MOST_STEPS_ASKED) || !are_within(F.steps_of, m, MOST_CORRECTION_STEPS))
         goto end;
     if (m % 2) {
@@ -448,11 +429,11 @@ static PyObject *advanced(PyObject *self, PyObject *const *args, Py_ssize_t coun
     const npy_intp widths_of[] = {wide, 0, 0, 0};
     double **places[] = {&F.state, &F.closed, &F.left, &F.waits};
     for (int i = 0; i < 4; i++) {
-        if (!(parts[i] = made(i ? half : m, widths_of[i])))
+        if (!(parts[i] = new_numbers(i ? half : m, widths_of[i])))
             goto end;
         *places[i] = numbers_of(parts[i]);
     }
-    memcpy(F.state, from, (size_t)(m * wide) * sizeof(double));
+    memcpy(F.state, from[4], (size_t)(m * wide) * sizeof(double));
     memcpy(F.closed, closed, (size_t)half * sizeof(double));
     memcpy(F.left, left, (size_t)half * sizeof(double));
     /* Of each front: T, guess, led, normals, gaps, tangents, three numbers and J; and a row. */
@@ -476,7 +457,7 @@ static PyObject *advanced(PyObject *self, PyObject *const *args, Py_ssize_t coun
         PyErr_NoMemory();
         goto end;
     }
-    if (!(parts[4] = made(F.used, point)))
+    if (!(parts[4] = new_numbers(F.used, point)))
         goto end;
     if (F.used)
         memcpy(numbers_of(parts[4]), F.history, (size_t)(F.used * point) * sizeof(double));
@@ -484,10 +465,8 @@ static PyObject *advanced(PyObject *self, PyObject *const *args, Py_ssize_t coun
 end:
     free(space);
     free(F.history);
-    for (int i = 0; i < 7; i++)
-        Py_XDECREF(copies[i]);
-    for (int i = 0; i < 5; i++)
-        Py_XDECREF(parts[i]);
+    let_go(copies, 7);
+    let_go(parts, 5);
     return all;
 }
 

@@ -236,22 +236,17 @@ static PyObject *candidates(PyObject *self, PyObject *const *args, Py_ssize_t co
     Growing of_reals = {NULL, 0, 0, 6}, of_pairs = {NULL, 0, 0, 12};
     (void)self;
     const Elimination *known = count == 2 ? PyCapsule_GetPointer(args[0], ELIMINATION) : NULL;
-    PyArrayObject *L6 = known ? doubles(args[1], 3, &copy) : NULL;
-    if (!L6) {
+    npy_intp m = 0;
+    const double *from = known ? targets(args[1], &m, &copy) : NULL;
+    if (!from) {
         if (!PyErr_Occurred())
             PyErr_SetString(PyExc_TypeError, "candidates(elimination, closing)");
-        return NULL;
-    }
-    npy_intp m = PyArray_DIM(L6, 0);
-    if (PyArray_NDIM(L6) != 3 || PyArray_SIZE(L6) != 16 * m) {
-        PyErr_SetString(PyExc_ValueError, "expected targets (m, 4, 4)");
         goto end;
     }
     const npy_intp shape[] = {m, 2};
     counts = PyArray_EMPTY(2, shape, NPY_DOUBLE, 0);
     if (!counts)
         goto end;
-    const double *from = PyArray_DATA(L6);
     double *to = PyArray_DATA((PyArrayObject *)counts);
     int short_of_memory = 0;
     Py_BEGIN_ALLOW_THREADS

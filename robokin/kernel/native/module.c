@@ -19,9 +19,6 @@
 /* Under which name a robot's facts hold its chain. */
 #define KEPT_CHAIN "chain at once"
 
-/* numpy has no more, whatever its version. */
-#define MOST_DIMENSIONS 64
-
 /* In the order of Lanes. */
 #define LANES(name)                                                                                                    \
     {poses##name, frames##name, jacobians##name, errors##name, descended##name, corrected##name, gone_down##name,      \
@@ -39,43 +36,6 @@ Lanes lanes;
 static const char *in_use = "base";
 
 static void freed(PyObject *capsule) { PyMem_Free(PyCapsule_GetPointer(capsule, CHAIN)); }
-
-PyArrayObject *doubles(PyObject *object, int least, PyObject **copy) {
-    *copy = NULL;
-    if (!PyArray_API) {
-        PyErr_SetString(PyExc_RuntimeError, "with_arrays() comes first");
-        return NULL;
-    }
-    if (!PyArray_Check(object)) {
-        PyErr_SetString(PyExc_TypeError, "expected an array");
-        return NULL;
-    }
-    PyArrayObject *array = (PyArrayObject *)object;
-    if (PyArray_NDIM(array) < least) {
-        PyErr_Format(PyExc_ValueError, "expected an array of at least %d dimensions, found one of %d", least,
-                     PyArray_NDIM(array));
-        return NULL;
-    }
-    if (PyArray_TYPE(array) == NPY_DOUBLE && PyArray_IS_C_CONTIGUOUS(array) && PyArray_ISALIGNED(array) &&
-        PyArray_ISNOTSWAPPED(array))
-        return array;
-    *copy = PyArray_FROM_OTF(object, NPY_DOUBLE, NPY_ARRAY_IN_ARRAY | NPY_ARRAY_ENSUREARRAY);
-    return (PyArrayObject *)*copy;
-}
-
-const double *table(PyObject *object, npy_intp width, npy_intp *m, PyObject **copy) {
-    PyArrayObject *array = doubles(object, 1, copy);
-    if (!array)
-        return NULL;
-    npy_intp size = PyArray_SIZE(array), count = PyArray_DIM(array, 0);
-    if ((*m >= 0 && count != *m) || size != count * width) {
-        PyErr_Format(PyExc_ValueError, "arrays do not fit each other: found %zd numbers in %zd rows, expected %zd a row%s",
-                     (Py_ssize_t)size, (Py_ssize_t)count, (Py_ssize_t)width, *m < 0 ? "" : " and as many rows as before");
-        return NULL;
-    }
-    *m = count;
-    return PyArray_DATA(array);
-}
 
 /* The handle of a chain: of n + 1 constants m, 4 rows of 4 each, of whether its joints turn, and of their offsets. */
 static PyObject *built(int n, const double *m, const double *turning, const double *at) {
@@ -127,43 +87,9 @@ static PyObject *chain(PyObject *self, PyObject *const *args, Py_ssize_t count) 
     }
     capsule = built((int)n, PyArray_DATA(C), PyArray_DATA(revolute), PyArray_DATA(offsets));
 end:
-    for (int i = 0; i < 3; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 3);
     return capsule;
 }
-
-const Chain *asked(PyObject *capsule, PyObject *object, PyArrayObject **q, PyObject **copy) {
-    const Chain *known = PyCapsule_GetPointer(capsule, CHAIN);
-    *copy = NULL;
-    if (!known)
-        return NULL;
-    *q = doubles(object, 1, copy);
-    if (!*q)
-        return NULL;
-    if (PyArray_DIM(*q, PyArray_NDIM(*q) - 1) != known->n) {
-        PyErr_SetString(PyExc_ValueError, "expected a value for each joint in the last dimension");
-        Py_XDECREF(*copy);
-        *copy = NULL;
-        return NULL;
-    }
-    return known;
-}
-
-PyObject *empty(PyArrayObject *q, int more, const npy_intp *shape) {
-    npy_intp dims[MOST_DIMENSIONS];
-    int before = PyArray_NDIM(q) - 1;
-    if (before + more > MOST_DIMENSIONS) {
-        PyErr_SetString(PyExc_ValueError, "too many dimensions");
-        return NULL;
-    }
-    for (int i = 0; i < before; i++)
-        dims[i] = PyArray_DIM(q, i);
-    for (int i = 0; i < more; i++)
-        dims[before + i] = shape[i];
-    return PyArray_EMPTY(before + more, dims, NPY_DOUBLE, 0);
-}
-
-npy_intp rows(PyArrayObject *q) { return PyArray_SIZE(q) / PyArray_DIM(q, PyArray_NDIM(q) - 1); }
 
 /* The array that a caller gives for the answer, or a new one, of q's leading shape and `more` dimensions. */
 static PyObject *answer(PyObject *given, PyArrayObject *q, int more, const npy_intp *shape) {

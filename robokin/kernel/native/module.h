@@ -1,6 +1,7 @@
 /* What the files of the module share: numpy's API, the arguments of calls, the set of instructions in use.
 
-   module.c takes the methods of the others: each file has a table of its own (`more_methods`).
+   module.c takes the methods of the others: each file has a table of its own (`more_methods`). arguments.c reads what
+   they are called with.
 */
 
 #ifndef ROBOKIN_MODULE_H
@@ -73,6 +74,21 @@ PyArrayObject *doubles(PyObject *object, int least, PyObject **copy);
 /* An array of m rows of `width` numbers each, or of any number of rows where m is negative, which is found out. */
 const double *table(PyObject *object, npy_intp width, npy_intp *m, PyObject **copy);
 
+/* A table among the arguments of a call: where it stands, as wide as `table` wants it and with as many rows. */
+typedef struct {
+    int place;
+    npy_intp width, *rows;
+} Given;
+
+/* The numbers of some tables in turn, each with its copy or NULL; 0 and an error where one does not fit. */
+int all_tables(PyObject *const *args, const Given *given, int count, const double **from, PyObject **copies);
+
+/* The numbers of m targets (m, 4, 4). */
+const double *targets(PyObject *object, npy_intp *m, PyObject **copy);
+
+/* Give references back, of which some may be NULL. */
+void let_go(PyObject **objects, int count);
+
 /* The chain and the joint values (..., n) of a call. */
 const Chain *asked(PyObject *capsule, PyObject *object, PyArrayObject **q, PyObject **copy);
 
@@ -81,6 +97,12 @@ PyObject *empty(PyArrayObject *q, int more, const npy_intp *shape);
 
 /* The number of rows of q. */
 npy_intp rows(PyArrayObject *q);
+
+/* A new array (m, width), or (m,) where the width is 0. */
+PyObject *new_numbers(npy_intp m, npy_intp width);
+
+/* The numbers of an array of doubles. */
+double *numbers_of(PyObject *array);
 
 /* The tables of a batch's answers: whether a target is answered (m); of each how many candidates there were, how many
    solutions close, how many of those count for the limits, and how many are listed (m); of the listed ones, in so many

@@ -92,8 +92,7 @@ static PyObject *swivel(PyObject *self, PyObject *const *args, Py_ssize_t count)
     if (!capsule)
         PyMem_Free(made);
 end:
-    for (int i = 0; i < 3; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 3);
     return capsule;
 }
 
@@ -198,28 +197,22 @@ static PyObject *solutions(PyObject *self, PyObject *const *args, Py_ssize_t cou
     (void)self;
     int most = count == 4 ? most_of(args[2]) : 0;
     const SwivelArm *arm = most ? PyCapsule_GetPointer(args[0], SWIVEL) : NULL;
-    PyArrayObject *T = arm ? doubles(args[1], 3, &copy) : NULL;
-    if (!T) {
+    npy_intp m = 0;
+    const double *from = arm ? targets(args[1], &m, &copy) : NULL;
+    if (!from) {
         if (!PyErr_Occurred())
             PyErr_SetString(PyExc_TypeError, "swivel_solutions(arm, T, most, tables)");
-        return NULL;
-    }
-    if (PyArray_NDIM(T) != 3 || PyArray_DIM(T, 1) != 4 || PyArray_DIM(T, 2) != 4) {
-        PyErr_SetString(PyExc_ValueError, "expected targets (m, 4, 4)");
         goto end;
     }
-    const npy_intp m = PyArray_DIM(T, 0);
     if (!batch_tables(args[3], m, most, SEVEN, made, at))
         goto end;
-    const double *from = PyArray_DATA(T);
     Py_BEGIN_ALLOW_THREADS
     answered(arm, from, m, most, at);
     Py_END_ALLOW_THREADS
     Py_INCREF(Py_None);
     all = Py_None;
 end:
-    for (int i = 0; i < TABLES; i++)
-        Py_XDECREF(made[i]);
+    let_go(made, TABLES);
     Py_XDECREF(copy);
     return all;
 }

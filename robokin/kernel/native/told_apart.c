@@ -35,13 +35,6 @@ static int ordered(const void *first, const void *second) {
     return a->place < b->place ? -1 : a->place > b->place;
 }
 
-static double *of(PyObject *array) { return PyArray_DATA((PyArrayObject *)array); }
-
-static PyObject *new_numbers(npy_intp m, npy_intp width) {
-    const npy_intp shape[] = {m, width};
-    return PyArray_EMPTY(width ? 2 : 1, shape, NPY_DOUBLE, 0);
-}
-
 static PyObject *new_places(npy_intp m) { return PyArray_EMPTY(1, &m, NPY_INTP, 0); }
 
 /* The targets (m,) of rows: whole numbers that can be counted. */
@@ -113,8 +106,7 @@ static PyObject *each_once(PyObject *self, PyObject *const *args, Py_ssize_t cou
         }
 end:
     free(rows);
-    for (int i = 0; i < 5; i++)
-        Py_XDECREF(copies[i]);
+    let_go(copies, 5);
     return mask;
 }
 
@@ -219,7 +211,7 @@ static PyObject *arranged(PyObject *self, PyObject *const *args, Py_ssize_t coun
             PyErr_NoMemory();
         goto end;
     }
-    double *q = of(wrapped);
+    double *q = numbers_of(wrapped);
     for (npy_intp k = 0; k < m; k++) {
         for (npy_intp i = 0; i < n; i++) {
             double value = all.q[n * k + i];
@@ -277,10 +269,8 @@ end:
     free(sums);
     free(kept);
     Py_XDECREF(wrapped);
-    for (int i = 0; i < 4; i++)
-        Py_XDECREF(parts[i]);
-    for (int i = 0; i < 6; i++)
-        Py_XDECREF(copies[i]);
+    let_go(parts, 4);
+    let_go(copies, 6);
     return all_parts;
 }
 
@@ -296,13 +286,13 @@ static PyObject *regular(PyObject *self, PyObject *const *args, Py_ssize_t count
     const Chain *loop = PyCapsule_GetPointer(args[0], CHAIN);
     if (loop && loop->n != 6)
         PyErr_SetString(PyExc_ValueError, "expected a loop of six joints");
-    const double *values = loop && loop->n == 6 ? table(args[1], 12, &m, &copies[0]) : NULL;
-    const double *needed = values ? table(args[2], 1, &m, &copies[1]) : NULL;
-    answer = needed ? new_numbers(m, 0) : NULL;
+    const Given given[] = {{1, 12, &m}, {2, 1, &m}};
+    const double *from[2];
+    if (loop && loop->n == 6 && all_tables(args, given, 2, from, copies))
+        answer = new_numbers(m, 0);
     if (answer)
-        lanes.regulars(loop, values, needed, m, of(answer));
-    Py_XDECREF(copies[0]);
-    Py_XDECREF(copies[1]);
+        lanes.regulars(loop, from[0], from[1], m, numbers_of(answer));
+    let_go(copies, 2);
     return answer;
 }
 
