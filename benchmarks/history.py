@@ -65,11 +65,26 @@ def _commit() -> str:
     return done.stdout.strip()
 
 
+def kept_runs(runs: Path) -> list[dict[str, Any]]:
+    """The runs of a folder, the oldest first; a file that is none is named and passed over."""
+    found = []
+    for path in sorted(runs.glob("*.json")):
+        try:
+            run = json.loads(path.read_text())
+            whole = isinstance(run["time"], str) and all(value + 0.0 > 0.0 for value in run["figures"].values())
+        except (OSError, ValueError, TypeError, LookupError, AttributeError):
+            whole = False
+        if whole:
+            found.append(run)
+        else:
+            print(f"{path} is no run, and is passed over")
+    return sorted(found, key=lambda run: run["time"])
+
+
 def earlier(run: dict[str, Any], runs: Path) -> dict[str, Any] | None:
     """The last run before this one on the same machine, with the same Python and numpy and the same kernel."""
     found = None
-    for path in sorted(runs.glob("*.json")):
-        other: dict[str, Any] = json.loads(path.read_text())
+    for other in kept_runs(runs):
         same = all(other.get(key) == run[key] for key in ("machine", "kernel"))
         if same and other["time"] < run["time"] and other["figures"].keys() & run["figures"].keys():
             found = other
@@ -98,17 +113,21 @@ def keep() -> None:
     run, runs = this_run(), folder()
     if not run["figures"]:
         return
+    print()
     last = earlier(run, runs)
-    runs.mkdir(parents=True, exist_ok=True)
     path = runs / f"{run['time'].replace(':', '')}.json"
-    path.write_text(json.dumps(run, indent=1, ensure_ascii=False) + "\n")
-    print(f"\nkept as {path}")
+    try:
+        runs.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(run, indent=1, ensure_ascii=False) + "\n")
+        print(f"kept as {path}")
+    except OSError as error:
+        print(f"not kept: {error}")
     if last is None:
-        print("the first run on this machine")
+        print("the first such run on this machine, with this Python, numpy and kernel")
         return
     common = last["figures"].keys() & run["figures"].keys()
     grown = worse(last["figures"], run["figures"])
     said = f"{len(grown)} of {len(common)} figures got worse" if grown else f"none of {len(common)} figures got worse"
-    print(f"{said} beyond noise since {last['time']} ({last['commit']})")
+    print(f"{said} beyond noise since {last['time']} ({last.get('commit', '')})")
     for one in grown:
         print(f"  {one.name:<70} {one.before:.3g} to {one.now:.3g}: {one.growth:.2f} times what all grew by")

@@ -53,4 +53,9 @@ def line(name: str, figure: str, remark: str = "", *, time: bool = True) -> None
     with contextlib.suppress(ValueError):
         value = float(figure.replace(",", ""))
         if time:
-            figures[f"{_benchmark}: {name.strip()}"] = value
+            note(name, value)
+
+
+def note(name: str, value: float) -> None:
+    """Keep a time for the history."""
+    figures[f"{_benchmark}: {name.strip()}"] = value

@@ -1,9 +1,9 @@
 """One side of the pairs: answers, in a process of its own, how long a thing takes it.
 
 `python -m benchmarks.pair_sides SIDE FOLDER` reads a question a line from standard input, and writes a line of JSON for
-each: {"seconds": [per call or per pose]} or {"missing": why}. A peer that aborts ends its own process and no other.
-FOLDER holds what is asked about, so that a peer's environment needs no robokin: for each arm an `.npz` with q, T, the
-joints that are held with their values, and the cells alpha, a, d of its table.
+each: {"seconds": per call or per pose} or {"missing": why}. A peer that aborts ends its own process and no other.
+FOLDER holds what is asked about, so that a peer's environment needs no robokin: for each arm an `.npz` with q, T, poses
+that are rescued, the joints that are held with their values, and the cells alpha, a, d of its table.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def taken(action: Callable[[], object]) -> float:
 
 
 class Side(ABC):
-    """What is measured: questions by name, `one` of them a call for each row, `batch` one call for all."""
+    """What is measured: WHAT_WAY, of which the way `batch` is one call for all rows, any other a call for each."""
 
     package = ""
 
@@ -128,7 +128,7 @@ class Robokin(Side):
         options = self.options(rows)
         return loop(lambda T: solve_ik(robot, T, **options), rows["T"][:count])
 
-    def ik_objects(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:
+    def ik_all_objects(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:
         from robokin import solve_ik
 
         options = self.options(rows)
@@ -139,6 +139,27 @@ class Robokin(Side):
 
         T, options = rows["T"][:count], self.options(rows)
         return lambda: solve_ik(robot, T, **options)
+
+    def ik_rescued(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:
+        from robokin import solve_ik
+
+        return loop(lambda T: solve_ik(robot, T), rows["rescued"][:count])
+
+    def motions_one(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:
+        from robokin import solve_ik
+
+        return loop(lambda T: solve_ik(robot, T), rows["T"][:count])
+
+    def motions_all_objects(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:
+        from robokin import solve_ik
+
+        return loop(lambda T: [one.q for one in solve_ik(robot, T).solutions], rows["T"][:count])
+
+    def motions_batch(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:
+        from robokin import solve_ik
+
+        T = rows["T"][:count]
+        return lambda: solve_ik(robot, T)
 
     def csv_batch(self, robot: Any, rows: Any, count: int) -> Callable[[], object]:
         return lambda: self.command(robot, "csv")
@@ -178,7 +199,7 @@ class Pinocchio(Side):
         pin, model, data, _, _ = arm
         return loop(lambda q: pin.forwardKinematics(model, data, q), rows["q"][:count])
 
-    def fk_copy(self, arm: Any, rows: Any, count: int) -> Callable[[], object]:
+    def fk_copy_one(self, arm: Any, rows: Any, count: int) -> Callable[[], object]:
         pin, model, data, tool, last = arm
 
         def pose(q: Any) -> Any:
@@ -235,7 +256,7 @@ class Ssik(Side):
         # Full turns more or less are the same solution, as they are here.
         return loop(lambda T: module.solve(T, enumerate_windings=False), targets[:count])
 
-    def ik_from_dh(self, arm: Any, rows: Any, count: int) -> Callable[[], object]:
+    def ik_dh_one(self, arm: Any, rows: Any, count: int) -> Callable[[], object]:
         solver = arm[2]()
         return loop(solver.solve, rows["T"][:count])
 
@@ -313,8 +334,9 @@ def main() -> None:
     name, folder = sys.argv[1:]
     if name not in ("native", "python") and os.environ.get("PEERS"):
         site.addsitedir(os.environ["PEERS"])  # some stand where a .pth file there says
-    # What a peer prints by itself is no answer.
-    out, sys.stdout = sys.stdout, sys.stderr
+    # What a peer prints by itself is no answer, be it from Python or from C.
+    out, sys.stdout = os.fdopen(os.dup(1), "w"), sys.stderr
+    os.dup2(2, 1)
     for answer in answers(SIDES[name](Path(folder)), chain.from_iterable([sys.stdin])):
         print(json.dumps(answer), file=out, flush=True)
 

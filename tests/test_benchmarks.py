@@ -64,7 +64,7 @@ def test_a_run_is_kept_and_compared_with_the_last_on_its_machine(history, monkey
     monkeypatch.setattr(machine, "figures", dict(before))
     monkeypatch.setattr(history.time, "strftime", lambda form, t: "2026-01-01T00:00:00Z")
     history.keep()
-    assert "the first run on this machine" in capsys.readouterr().out
+    assert "the first such run on this machine" in capsys.readouterr().out
     (path,) = (tmp_path / "runs").iterdir()
     run = json.loads(path.read_text())
     assert run["figures"] == before
@@ -76,6 +76,38 @@ def test_a_run_is_kept_and_compared_with_the_last_on_its_machine(history, monkey
     said = capsys.readouterr().out
     assert "1 of 40 figures got worse beyond noise since 2026-01-01T00:00:00Z" in said
     assert "line 1 " in said
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "{", "[]", "3", "null", "{}", '{"time": 3, "figures": {}}', '{"time": "x"}', '{"time": "x", "figures": [1]}',
+     '{"time": "x", "figures": {"a": "1"}}', '{"time": "x", "figures": {"a": null}}', "\x00"],
+)  # fmt: skip
+def test_a_file_that_is_no_run_is_named_and_passed_over(history, monkeypatch, tmp_path, capsys, before, text):
+    from benchmarks import machine
+
+    monkeypatch.setenv("BENCH_HISTORY", str(tmp_path))
+    monkeypatch.setattr(machine, "figures", dict(before))
+    monkeypatch.setattr(history.time, "strftime", lambda form, t: "2026-01-01T00:00:00Z")
+    history.keep()
+    (tmp_path / "2026-01-01T000001Z.json").write_text(text)
+    monkeypatch.setattr(history.time, "strftime", lambda form, t: "2026-01-02T00:00:00Z")
+    capsys.readouterr()
+    history.keep()
+    said = capsys.readouterr().out
+    assert "2026-01-01T000001Z.json is no run, and is passed over" in said
+    assert "none of 40 figures got worse beyond noise since 2026-01-01T00:00:00Z" in said
+    assert (tmp_path / "2026-01-02T000000Z.json").exists()
+
+
+def test_a_run_that_cannot_be_kept_is_compared_all_the_same(history, monkeypatch, tmp_path, capsys, before):
+    from benchmarks import machine
+
+    monkeypatch.setenv("BENCH_HISTORY", str(tmp_path / "file" / "runs"))
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(machine, "figures", dict(before))
+    history.keep()
+    assert "not kept: " in capsys.readouterr().out
 
 
 def test_lines_are_kept_under_their_benchmark(history, monkeypatch, capsys):

@@ -14,6 +14,7 @@ from robokin.errors import InputError, shown
 if TYPE_CHECKING:
     from robokin.arrays import Array
     from robokin.inverse.rounded_curves import CornerRounding
+    from robokin.inverse.time_profiles import MotionLimits
     from robokin.inverse.trajectories import Timing
     from robokin.model import Robot
     from robokin.units import Units
@@ -22,7 +23,7 @@ PROFILES = ("cubic", "quintic", "trapezoidal")
 
 
 ENDLESS = "inf"
-"""What is said of a joint that has no limit, beside others that have."""
+"""What is said of a joint that has no limit, or of all of them."""
 
 
 class TimingOptions(OptionGroup):
@@ -76,10 +77,24 @@ class TimingOptions(OptionGroup):
             _joint_values(self.max_velocity, "--max-velocity", robot, units),
             _joint_values(self.max_acceleration, "--max-acceleration", robot, units),
         )
+        self._expect_an_end(limits)
         profile: Any = choose(self.profile, PROFILES, "--profile") or "quintic"
         told = {"blend": blend} if (blend := _number(self.blend, "--blend", "a part above 0 and up to 1", 1.0)) else {}
         duration = _number(self.duration, "--duration", "seconds above 0")
         return Timing(limits, profile, duration, passing, rate=_number(self.rate, "--rate", "rows a second"), **told)
+
+    def _expect_an_end(self, limits: MotionLimits) -> None:
+        """Raises InputError for limits that limit nothing, where they alone would say how long the path takes."""
+        import numpy as np
+
+        given = {"--max-velocity": self.max_velocity, "--max-acceleration": self.max_acceleration}
+        told = [name for name, text in given.items() if text is not None]
+        if self.duration is None and told and np.isposinf([limits.velocity, limits.acceleration]).all():
+            more = " or ".join(["--duration", *(name for name in given if name not in told)])
+            raise InputError(
+                f"{' and '.join(told)}: found '{ENDLESS}', which limits no joint, expected a value for one or more, or "
+                f"{more} beside it"
+            )
 
     def rounding(self, units: Units, way: str) -> CornerRounding | None:
         """How the tool passes by the points between, None where it stops at them. Raises InputError."""
@@ -120,7 +135,9 @@ def _joint_values(text: str | None, option: str, robot: Robot, units: Units) -> 
     turns = [bool(turn) for turn in robot.revolute]
     parts = split_vector(text)
     endless = np.array([part.strip().lower() == ENDLESS for part in parts])
-    if len(parts) == robot.n > 1 and endless.any() and not endless.all():
+    if endless.all() and len(parts) in (1, robot.n):
+        return np.full(robot.n, np.inf)
+    if len(parts) == robot.n and endless.any():
         text = ",".join("1" if no else part for no, part in zip(endless.tolist(), parts, strict=True))
     else:
         endless = np.zeros(robot.n, dtype=bool)

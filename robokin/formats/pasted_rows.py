@@ -6,7 +6,7 @@ import csv
 import re
 from itertools import groupby
 
-from robokin.errors import InputError
+from robokin.errors import InputError, shown
 from robokin.formats.pasted_code import code_rows
 from robokin.formats.pasted_headings import TABLE, heading_of
 from robokin.formats.pasted_markup import without_markup
@@ -71,8 +71,8 @@ def pasted_rows(text: str, width: int | None = None) -> tuple[list[PastedRow], l
     runs = [run for run in runs if len(run[0].cells) == width] or runs
     headed = [below for run in runs if width is None and len(below := _from_headings(run)) > 1]
     if len(headed) > 1:
-        lines = " and ".join(str(run[0].line) for run in headed[:3])
-        raise InputError(f"found {len(headed)} tables (lines {lines}), expected one")
+        lines = " and ".join(f"line {run[0].line}, '{shown(', '.join(run[0].cells))}'" for run in headed[:3])
+        raise InputError(f"found {len(headed)} lines of headings ({lines}), expected one table, without its notes")
     table = headed[0] if headed else max(runs, key=len, default=[])
     if len(table) < 2 and len(folded := _folded(text)) > 1:
         return _short(folded), []

@@ -213,6 +213,9 @@ def test_an_arc(call):
         (["--duration", "soon"], "--duration: found 'soon'"),
         (["--max-velocity", "-1"], "--max-velocity: found '-1', expected values above 0"),
         (["--max-velocity", "1,2"], "--max-velocity"),
+        (["--max-velocity", "inf"], "--max-velocity: found 'inf', which limits no joint, expected a value"),
+        (["--max-velocity", "-inf"], "--max-velocity"),
+        (["--max-velocity", "inf", "--max-acceleration", "inf"], "--max-velocity and --max-acceleration: found 'inf'"),
         (["--max-velocity", "10", "--duration", "0.1"], "found a duration of 0.1 s, expected at least 5.625 s"),
         (["--spline", "--blend", "0.2"], "--spline and --blend exclude each other"),
         (["--spline", "--profile", "cubic"], "--profile is of pieces with a stop"),
@@ -361,3 +364,12 @@ def test_a_joint_is_held(call):
 )  # fmt: skip
 def test_slips_of_held_joints_are_told(call, words, said):
     refused(call(*HELD, *words), said)
+
+
+@pytest.mark.parametrize("endless", ["inf", "inf,inf,inf,inf"])
+def test_no_limit_of_one_kind_is_as_if_nothing_was_said_of_it(call, endless):
+    words = ["path", "scara", "--from", "0,60,100,0", "--to", "40,30,50,90", "--steps", "5"]
+    limited = [*words, "--max-acceleration", "30,30,300,30"]
+    assert call(*limited, "--max-velocity", endless) == call(*limited)
+    timed = [*words, "--duration", "2"]
+    assert call(*timed, "--max-velocity", endless) == call(*timed)

@@ -335,7 +335,11 @@ FIRST = HEADS + "1\tθ1\t0\t0.1\t90°\n"
         (FIRST + "2\tθ2 - θ1\t0\t1\t0\n", "line 3: found theta1, the variable of line 2"),
         (FIRST + "2\tθ2\t0.3\t\n3\tθ3\t0\t1\t0\tx\n", "line 4: found 6 cells, expected 5"),
         ("i,theta,d,a,alpha\n1,q1,0,0.1,90°\n2,q2,0,0.1\n3,q3,0,0,1,9°\n", "line 3: found 4 cells, expected 5"),
-        (FIRST + "\n" + FIRST, r"found 2 tables \(lines 1 and 4\)"),
+        (FIRST + "\n" + FIRST, r"found 2 lines of headings \(line 1, '\w+, .*' and line 4, '.*'\), expected one table"),
+        (
+            FIRST + "\nθ\td\ta\tα\njoint angle\tlink offset\tlink length\tlink twist\n",
+            r"found 2 lines of headings \(line 1, '.*' and line 4, 'θ, d, a, α'\), expected one table",
+        ),
         (FIRST + "2\t0\t0\t1\t0\n3\t0\t0\t1\t0\n", "found no variable in 2 of 3 rows"),
         (FIRST + "2\tθ2 (90)\t0\t1\t0\n", r"line 3: found 'θ2 \(90\)', expected theta2 alone"),
         (FIRST + "2\tθ2 = 90\t0\t1\t0\n", "line 3: found 'θ2 = 90', expected the joint's variable"),
