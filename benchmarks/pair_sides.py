@@ -326,8 +326,10 @@ def answers(side: Side, questions: Iterator[str]) -> Iterator[dict[str, Any]]:
                 yield {"version": side.version()}
             else:
                 yield {"seconds": side.measured(asked["what"], asked["arm"], asked["count"])}
+        except importlib.metadata.PackageNotFoundError:
+            yield {"missing": "not installed"}
         except Exception as error:
-            yield {"missing": f"{type(error).__name__}: {error}"[:90]}
+            yield {"missing": " ".join(f"{type(error).__name__}: {error}".split())[:90]}
 
 
 def main() -> None:
