@@ -1,8 +1,8 @@
 """Data frames for Python: the tables that the shell reads and writes as CSV, with pandas where it is installed.
 
-What is read may be a frame of pandas or of polars, a table of pyarrow, or a row of pandas: columns are found by their
-names, in any order, as in a CSV. What is made is a frame of pandas. Without `units` all of it is in metres and radians,
-as arrays are; with units, headings say them (`q1 [deg]`), so that what is written is read again as what it is.
+What is read may be a frame of pandas or of polars, a table of pyarrow, a row of pandas, or a dict: columns are found by
+their names, in any order, as in a CSV. What is made is a frame of pandas. Without `units` all of it is in metres and
+radians, as arrays are; with units, headings say them (`q1 [deg]`), so that it is read again as what it is.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 from robokin.arrays import Array
 from robokin.brief import Answer
 from robokin.documents import expect_units
-from robokin.errors import InputError, RobokinError, shown
-from robokin.expected import described, expect_choice, expect_kind, expect_numbers, has_names, named_column, names_of
+from robokin.errors import InputError, RobokinError
+from robokin.expected import described, expect_choice, expect_columns, expect_kind, expect_numbers, has_names, names_of
 from robokin.grading.class_statistics import ClassStatistics
 from robokin.grading.mark_items import Report
 from robokin.inverse.joint_paths import Path
@@ -43,7 +43,7 @@ from robokin.tables.pose_columns import PLACES, PoseColumns, poses_from_rows
 from robokin.tables.wanted_columns import Wanted, factors
 from robokin.units import Units
 
-EXPECTED = "a data frame, or a row of one, whose columns have names"
+EXPECTED = "a data frame, a row of one, or a dict, whose columns have names"
 
 
 def joints(robot: Robot | Tree, table: Any, units: Units | None = None, argument: str = "table") -> Array:
@@ -161,11 +161,7 @@ def _columns(wanted: Wanted, table: Any, argument: str) -> tuple[Array, FoundCol
         found = wanted.headed([str(name) for name in names])
     except RobokinError as error:
         raise InputError(f"{argument}: {error}") from None
-    parts = []
-    for place in found.places:
-        said = f"{argument}, column '{shown(str(names[place]))}'"
-        parts.append(expect_numbers(named_column(table, place), said, "numbers"))
-    values = np.stack(parts, axis=-1)
+    values = expect_columns(table, found.places, argument)
     scale = factors(found, wanted.units)
     return (values if scale is None else values * scale), found
 
@@ -212,6 +208,11 @@ def _frame(names: Sequence[str], columns: Array) -> Any:
 
 def _behind(made: Any, given: Any, rows: Array | Any) -> Any:
     """A frame behind the other columns of the table that was asked, a row of it for each of its own, with its index."""
+    if isinstance(given, dict):
+        cells = {name: np.atleast_1d(cell) for name, cell in given.items()}
+        if {column.shape for column in cells.values()} != {(len(next(iter(cells.values()))),)}:
+            raise InputError("the dict has columns of different lengths, expected one length")
+        given = _pandas().DataFrame(cells)
     if not hasattr(given, "columns"):
         given = given.to_frame().T
     if not hasattr(given, "iloc"):  # polars and pyarrow

@@ -40,8 +40,10 @@ def described(value: Any) -> str:
 def names_of(value: Any) -> list[Any]:
     """The names of a data frame's columns, or of the cells of a row of one; [] for all else.
 
-    Frames of pandas and polars, tables of pyarrow, rows of pandas.
+    Frames of pandas and polars, tables of pyarrow, rows of pandas, rows and columns as a dict.
     """
+    if isinstance(value, dict):
+        return [*value]
     for holder in ("column_names", "columns", "index"):
         names = getattr(value, holder, None)
         if names is None or callable(names) or (holder == "index" and not hasattr(value, "iloc")):
@@ -61,13 +63,18 @@ def has_names(value: Any) -> bool:
     return not all(isinstance(name, Integral) for name in names_of(value))
 
 
-def named_column(table: Any, place: int) -> Any:
-    """A column of a data frame, by where it stands, as an array; of a row a cell."""
+def _hides_numbers(value: Any) -> bool:
+    """Whether something in an array, or in a list of arrays, is masked, which numpy would read as NaN or bare."""
     import numpy as np
 
-    if not hasattr(table, "columns"):
-        return np.asarray(table.iloc[place])
-    return np.asarray(table.iloc[:, place] if hasattr(table, "iloc") else table[names_of(table)[place]])
+    if isinstance(value, np.ma.MaskedArray):
+        return bool(np.ma.is_masked(value))
+    if not isinstance(value, list | tuple):
+        return False
+    kinds = set(map(type, value))
+    if not any(issubclass(kind, np.ma.MaskedArray | list | tuple) for kind in kinds):
+        return False
+    return any(map(_hides_numbers, value))
 
 
 def expect_numbers(value: Any, argument: str, what: str) -> Array:
@@ -82,7 +89,7 @@ def expect_numbers(value: Any, argument: str, what: str) -> Array:
         return value
     if has_names(value):
         raise InputTypeError(f"{argument}: found a table whose columns have names, expected {what}")
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+    if _hides_numbers(value):
         raise InputError(f"{argument}: found an array with masked values, expected {what}")
     try:
         array = np.asarray(value)
@@ -101,6 +108,24 @@ def expect_numbers(value: Any, argument: str, what: str) -> Array:
         raise InputTypeError(f"{argument}: found truth values, expected {what}")
     found = described(value) if array.ndim == 0 else f"{described(value)} with something that is no number"
     raise InputTypeError(f"{argument}: found {found}, expected {what}")
+
+
+def expect_columns(table: Any, places: Iterable[int], argument: str) -> Array:
+    """The numbers (m, k) of k columns of a data frame, by where they stand; of a row (k,)."""
+    import numpy as np
+
+    names = names_of(table)
+    columns = []
+    for place in places:
+        if isinstance(table, dict) or not hasattr(table, "columns"):
+            column = table[names[place]] if isinstance(table, dict) else table.iloc[place]
+        else:
+            column = table.iloc[:, place] if hasattr(table, "iloc") else table[names[place]]
+        column = np.asarray(column) if names_of(column) or not isinstance(table, dict) else column
+        columns.append(expect_numbers(column, f"{argument}, column '{shown(str(names[place]))}'", "numbers"))
+    if columns[0].ndim > 1 or len({column.shape for column in columns}) > 1:  # of a dict: a frame's are of one length
+        raise InputError(f"{argument}: found columns of different lengths, expected a number, or as many, in each")
+    return np.stack(columns, axis=-1)
 
 
 def expect_finite(value: Any, argument: str, what: str, shape: tuple[int, ...] | None = None) -> Array:

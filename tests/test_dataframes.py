@@ -65,6 +65,18 @@ def test_joint_values_are_found_by_their_names(name):
     assert np.array_equal(READS_Q[name](shuffled(time=np.arange(5.0), note=["a"] * 5)), expected)
     by_joint = NamedTable(**{joint.name: Q[:, i] for i, joint in reversed([*enumerate(PUMA.joints)])})
     assert np.array_equal(READS_Q[name](by_joint), expected)
+    assert np.array_equal(READS_Q[name](by_joint.data), expected)
+
+
+def test_a_dict_is_a_row_by_the_joints_names():
+    row = {name: float(value) for name, value in zip(reversed(NAMES), reversed(Q[0]), strict=True)}
+    assert np.array_equal(PUMA.fk(row | {"time": 0.1}), T[0])
+    nearest = PUMA.ik(T[0], near=row)[0].q
+    assert np.array_equal(nearest, PUMA.ik(T[0], near=Q[0])[0].q)
+    place = dict(zip(("z", "y", "x"), T[0, 2::-1, 3], strict=True))
+    assert PUMA.ik(place | {"roll": 0.0, "pitch": 0.0, "yaw": 0.0}, task="position").reachable
+    cells = {"alpha": [0.0, 0.0], "a": [0.5, 0.3], "d": [0.0, 0.0], "theta": [0.0, 0.0]}
+    assert np.allclose(robokin.from_table(cells).fk([0.0, 0.0])[:3, 3], [0.8, 0.0, 0.0])
 
 
 def test_headings_say_units_as_in_a_csv():
@@ -112,6 +124,13 @@ def test_a_table_of_a_robot_is_read_by_its_columns():
         (lambda: PUMA.fk(shuffled(q7=np.zeros(5))), "q: found the column 'q7', expected q1 to q6 alone"),
         (lambda: PUMA.fk(shuffled(q1=["a"] * 5)), "q, column 'q1': found an array .* no number"),
         (lambda: PUMA.fk(shuffled(q1=[True] * 5)), "q, column 'q1': found truth values"),
+        (lambda: PUMA.fk(shuffled(q1=[1.0]).data), "q: found columns of different lengths"),
+        (lambda: PUMA.fk(shuffled(q1=1.0).data), "q: found columns of different lengths"),
+        (lambda: PUMA.fk({"q1": 1.0}), "q: found the columns q1, expected q1, q2, q3"),
+        (lambda: PUMA.fk(dict.fromkeys(NAMES, "1")), "q, column 'q1': found the string '1', expected numbers"),
+        (lambda: PUMA.fk(dict.fromkeys(NAMES, np.ma.masked)), "q, column 'q1': found an array with masked values"),
+        (lambda: robokin.from_table({"theta": [0], "d": [0], "a": [1, 1], "alpha": [0]}),
+         "table: found columns of different lengths"),
         (lambda: PUMA.ik(shuffled()), "T: found the columns .*expected x, y, z with roll"),
         (lambda: PUMA.ik(T[0], near=NamedTable(q1=[1.0])), "near: found the columns q1"),
         (lambda: PUMA.ik(T[0], near=shuffled()), r"near: found an array of shape \(5, 6\)"),
@@ -220,6 +239,16 @@ def test_a_target_without_a_solution_is_a_row_with_its_reason(pandas):
     assert made["target"].tolist() == [1, 2, 2]
     assert made["reason"].tolist() == ["out of reach", "", ""]
     assert made.loc[0, ["q1", "q2", "q3"]].isna().all()
+
+
+def test_other_columns_of_a_dict_stand_in_front(pandas):
+    columns = shuffled(time=np.arange(5.0)).data
+    made = robokin.dataframes.fk(PUMA, columns)
+    assert made.equals(robokin.dataframes.fk(PUMA, pandas.DataFrame(columns)))
+    row = {name: values[0] for name, values in columns.items()}
+    assert robokin.dataframes.fk(PUMA, row).iloc[0].equals(made.iloc[0])
+    with pytest.raises(InputError, match="different lengths"):
+        robokin.dataframes.fk(PUMA, columns | {"time": [1.0]})
 
 
 def test_other_columns_stand_in_front_but_for_those_that_are_made_anew(frame):

@@ -53,8 +53,10 @@ def test_a_result_is_a_sequence_of_its_solutions():
     assert result[1:3] == result.solutions[1:3]
     assert any(np.allclose(one.q, Q) for one in result)
     assert not robokin.solve_ik(PUMA, np.diag([1.0, 1.0, 1.0, 1.0]) + 9.0 * np.eye(4, k=3))
-    with pytest.raises(IndexError):
+    with pytest.raises(IndexError, match=f"solution 99 of {len(result)}$"):
         result[99]
+    with pytest.raises(IndexError, match="solution 0 of 0: out of reach"):
+        robokin.solve_ik(PUMA, np.diag([1.0, 1.0, 1.0, 1.0]) + 9.0 * np.eye(4, k=3))[0]
 
 
 def test_a_batch_gives_the_answer_of_each_target():

@@ -11,12 +11,11 @@ from numpy.typing import ArrayLike
 from robokin.errors import InputError, shown
 from robokin.expected import (
     expect_choice,
+    expect_columns,
     expect_finite,
     expect_kind,
     expect_number,
-    expect_numbers,
     has_names,
-    named_column,
     names_of,
 )
 from robokin.formats.pasted_description import Wishes, described_table
@@ -94,7 +93,4 @@ def _in_order(table: ArrayLike) -> ArrayLike:
         raise InputError(
             f"table: found the columns {shown(', '.join(names))}, expected {', '.join(CELLS)}, in any order"
         )
-    columns = [
-        expect_numbers(named_column(table, names.index(name)), f"table, column '{name}'", "numbers") for name in CELLS
-    ]
-    return np.stack([np.atleast_1d(column) for column in columns], axis=-1)
+    return np.atleast_2d(expect_columns(table, map(names.index, CELLS), "table"))

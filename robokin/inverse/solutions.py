@@ -260,8 +260,12 @@ class Result(Answer):
     @overload
     def __getitem__(self, i: slice) -> tuple[Solution, ...]: ...
     def __getitem__(self, i: SupportsIndex | slice) -> Solution | tuple[Solution, ...]:
-        """Solution i, or a tuple of some."""
-        return self.solutions[i]
+        """Solution i, or a tuple of some. Raises IndexError."""
+        try:
+            return self.solutions[i]
+        except IndexError:
+            why = "" if self.solutions else f": {self.reason}"
+            raise IndexError(f"solution {i} of {len(self.solutions)}{why}") from None
 
     def __iter__(self) -> Iterator[Solution]:
         """The solutions in their order."""

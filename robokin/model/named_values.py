@@ -8,7 +8,7 @@ from robokin.expected import has_names
 
 
 def plain_joint_values(robot: Any, q: Any, argument: str = "q") -> Any:
-    """What was given as joint values; of a data frame, or a row of one, the columns of the joints in their order.
+    """What was given; of a data frame, a row of one or a dict, the columns of the joints in their order.
 
     robot: a Robot or a Tree, whose module imports this one. Raises InputError where a joint has no column.
     """
@@ -20,7 +20,7 @@ def plain_joint_values(robot: Any, q: Any, argument: str = "q") -> Any:
 
 
 def plain_poses(T: Any, argument: str = "T", robot: Any = None, task: str = "pose") -> Any:
-    """What was given as poses; of a data frame, or a row of one, the poses that its columns say. Raises InputError."""
+    """What was given; of a data frame, a row of one or a dict, the poses that its columns say. Raises InputError."""
     if not has_names(T):
         return T
     import robokin  # as above

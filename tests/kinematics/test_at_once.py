@@ -68,8 +68,9 @@ def test_what_is_not_plain_is_checked_as_before(find):
             with pytest.raises(robokin.InputError, match="expected a Robot"):
                 find(no_robot, q)
         masked = np.ma.masked_array(q, mask=[False] * 5 + [True])
-        with pytest.raises(robokin.InputError, match="masked"):
-            find(robot, masked)
+        for hidden in (masked, [*masked], tuple(masked), [masked, masked], [[masked], [q]]):
+            with pytest.raises(robokin.InputError, match="masked"):
+                find(robot, hidden)
         assert find(robot, np.empty((0, 6))).shape[0] == 0
     with pytest.raises(robokin.InputError, match="frame"):
         robokin.jacobian(robot, q, frame="tol")
