@@ -10,9 +10,11 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 import logging
 import os
 import pickle
+import re
 import signal
 import threading
 import time
@@ -29,6 +31,14 @@ from robokin.jobs.ordered_map import MOST_CORES, WorkerError, no_interrupt, usab
 
 LOCAL = "local"
 """The address of processes of this machine, alone or with a number: `local:4`."""
+
+EXPECTED = f"{LOCAL}:N, tcp://HOST:PORT, or the file of a scheduler"
+FILE = "the one that `dask scheduler --scheduler-file` writes"
+
+ADDRESS = re.compile(
+    r"inproc://[^\s/]+/[0-9]+/\S+|(?:(?P<kind>[a-z]+)://)?(?:[^\s/:\[\]]+|\[[0-9A-Za-z:.%]+\]):(?P<port>[0-9]{1,5})"
+)
+"""Addresses of schedulers: of a machine (a name, a number, of IPv6 in brackets), or of this process."""
 
 INSTALL = "expected Dask: pip install 'robokin[cluster]'"
 
@@ -80,6 +90,8 @@ def cluster(address: str) -> Iterator[int]:
         distributed = open_now.enter_context(_distributed())
         if local is not None:
             address = open_now.enter_context(_local_cluster(distributed, local))
+        else:
+            address = _scheduler_address(distributed, address)
         client = open_now.enter_context(_client(distributed, address))
         workers = _workers(client, address, local)
         executor = open_now.enter_context(contextlib.closing(_ClusterExecutor(client)))
@@ -89,16 +101,53 @@ def cluster(address: str) -> Iterator[int]:
 
 def _local_workers(address: str) -> int | None:
     """The number of `local:N`, all usable cores for `local`; None for another address. Raises InputError."""
-    name, colon, count = address.partition(":")
-    if not address.strip():
+    name, colon, count = address.strip().partition(":")
+    if not name and not colon:
         raise InputError(f"found no address of a cluster, expected {LOCAL}:N or that of a Dask scheduler")
-    if name != LOCAL:
+    if name.casefold() != LOCAL:
         return None
     if not colon:
         return usable_cores()
     if not (count.isascii() and count.isdecimal() and len(count) < 9 and 1 <= int(count) <= MOST_CORES):
         raise InputError(f"found the cluster '{shown(address)}', expected {LOCAL}:N with N from 1 to {MOST_CORES}")
     return int(count)
+
+
+def _scheduler_address(distributed: Any, given: str) -> str:
+    """The address of a scheduler, from its file too: Dask itself waits long for one that is none. Raises InputError."""
+    address = given.strip()
+    if address.endswith(".json") or os.path.isfile(address):  # noqa: PTH113 - no path but for this
+        try:
+            with open(address, encoding="utf-8") as file:  # noqa: PTH123
+                address = str(json.load(file)["address"])
+        except FileNotFoundError:
+            raise InputError(f"{shown(given)}: no such file, expected {FILE}") from None
+        except OSError as error:
+            raise InputError(f"{shown(given)}: {error.strerror}, expected {FILE}") from None
+        except (ValueError, KeyError, TypeError):
+            raise InputError(f"{shown(given)}: found no address of a scheduler in it, expected {FILE}") from None
+    address = address.rstrip("/")
+    form = ADDRESS.fullmatch(address)
+    if form is None or form["kind"] not in (None, *distributed.comm.registry.backends) or not _is_port(form["port"]):
+        raise InputError(f"found the cluster '{shown(address)}', expected {EXPECTED}")
+    if form["kind"] in ("tls", "wss") and not _has_certificates(distributed):
+        raise InputError(f"found the cluster '{shown(address)}', expected certificates in Dask's settings for TLS")
+    return address
+
+
+def _is_port(port: str | None) -> bool:
+    """Whether this is a port's number; None where the address has no place for one."""
+    return port is None or 0 < int(port) < 1 << 16
+
+
+def _has_certificates(distributed: Any) -> bool:
+    """Whether Dask's settings name those that TLS needs, or what finds them. Raises InputError."""
+    try:
+        context = distributed.Security().get_connection_args("client").get("ssl_context")
+    except OSError as error:
+        said = f"found certificates that cannot be read ({shown(str(error))})"
+        raise InputError(f"{said}, expected those that Dask's settings name") from None
+    return context is not None or bool(import_module("dask").config.get("distributed.client.security-loader", None))
 
 
 @contextlib.contextmanager
@@ -163,20 +212,18 @@ def _interrupts_ignored() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _client(distributed: Any, address: str) -> Iterator[Any]:
-    """Whoever hands tasks to the scheduler. Raises InputError for no address, WorkerError where nobody answers."""
-    from_file = address.endswith(".json")
-    place = {"scheduler_file": address} if from_file else {"address": address}
-    if from_file and not os.path.isfile(address):  # noqa: PTH113 - Dask would wait for it
-        raise InputError(f"{shown(address)}: no such file, expected the one that `dask scheduler` writes of itself")
+    """Whoever hands tasks to the scheduler at HOST:PORT. Raises InputError, WorkerError where nobody answers."""
     try:
         with no_interrupt():
-            client = distributed.Client(**place, timeout=CONNECTING, set_as_default=False)
+            client = distributed.Client(address, timeout=CONNECTING, set_as_default=False)
     except (OSError, TimeoutError) as error:
-        sentence = f"no scheduler answers at {shown(address)} ({_said(error)})"
+        cause = getattr(error.__cause__ or error, "strerror", None)
+        why = f" ({shown(cause)})" if cause else ""
+        sentence = f"no scheduler answers at {shown(address)} in {CONNECTING:g} s{why}"
         raise WorkerError(f"{sentence}, expected a Dask scheduler that runs, or {LOCAL}:N") from None
     except (ValueError, TypeError, KeyError) as error:
         said = f"found the cluster '{shown(address)}' ({_said(error)})"
-        raise InputError(f"{said}, expected {LOCAL}:N, tcp://HOST:PORT, or the file of a scheduler") from None
+        raise InputError(f"{said}, expected {EXPECTED}") from None
     try:
         yield client
     finally:

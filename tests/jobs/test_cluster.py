@@ -115,7 +115,7 @@ def test_the_address_may_be_that_of_a_scheduler_or_its_file(tmp_path):
             assert [value for value, _ in ordered_map(square, range(9))] == [x * x for x in range(9)]
         file = tmp_path / "scheduler.json"
         file.write_text(json.dumps({"type": "Scheduler", "address": own.scheduler_address}))
-        with cluster(str(file)):
+        with cluster(f" {file.rename(tmp_path / 'scheduler')} "):
             assert [value for value, _ in ordered_map(square, range(9))] == [x * x for x in range(9)]
 
 
@@ -126,7 +126,15 @@ def test_the_address_may_be_that_of_a_scheduler_or_its_file(tmp_path):
         ("local:0", r"local:N with N from 1 to 1024"),
         ("local:two", r"local:N with N from 1 to 1024"),
         ("local:99999999999", r"local:N with N from 1 to 1024"),
+        ("local:1 2", r"local:N with N from 1 to 1024"),
         ("nonsense", "found the cluster 'nonsense'"),
+        ("127.0.0.1", "found the cluster '127.0.0.1', expected local:N, tcp://HOST:PORT"),
+        ("tcp://127.0.0.1", "found the cluster 'tcp://127.0.0.1', expected local:N, tcp://HOST:PORT"),
+        ("tcp://:8786", "found the cluster 'tcp://:8786'"),
+        ("tcp://127.0.0.1:99999", "found the cluster 'tcp://127.0.0.1:99999'"),
+        ("http://127.0.0.1:8786", "found the cluster 'http://127.0.0.1:8786'"),
+        ("tls://127.0.0.1:1", "expected certificates in Dask's settings"),
+        ("tcp://[::1]:1/", r"no scheduler answers at tcp://\[::1\]:1 in"),
         ("tcp://127.0.0.1:1", "no scheduler answers at tcp://127.0.0.1:1"),
         ("nowhere.json", "nowhere.json: no such file"),
     ],
@@ -135,6 +143,22 @@ def test_what_is_no_address_is_said(address, said, monkeypatch):
     monkeypatch.setattr(clusters, "CONNECTING", 0.3)
     monkeypatch.setitem(clusters.SETTINGS, "distributed.comm.timeouts.connect", "0.3s")
     with pytest.raises(RobokinError, match=said) as error, cluster(address):
+        pass
+    assert "expected" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "written, said",
+    [(text, "found no address of a scheduler in it") for text in (b"", b"x", b"[]", b'{"id": 1}', b"\xff\x00")]
+    + [(b'{"address": "nonsense"}', "found the cluster 'nonsense'"), (None, "Is a directory")],
+)
+def test_a_file_that_is_no_schedulers_is_said(written, said, tmp_path):
+    file = tmp_path / "scheduler.json"
+    if written is None:
+        file.mkdir()
+    else:
+        file.write_bytes(written)
+    with pytest.raises(RobokinError, match=said) as error, cluster(str(file)):
         pass
     assert "expected" in str(error.value)
 
