@@ -11,6 +11,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
+from itertools import compress
 from typing import Any
 
 import numpy as np
@@ -186,19 +187,19 @@ class ArrowReader:
         for batch in self.source.batches(places):
             numbers = np.arange(first, first + batch.num_rows)
             first += batch.num_rows
+            answered = np.ones(batch.num_rows, dtype=bool)
             if self.solution is not None:
                 answered = ~self._none(batch.column(places.index(self.solution)))
                 self.unsolved += int(np.sum(~answered))
-                if not answered.all():
-                    batch, numbers = batch.filter(pyarrow().array(answered)), numbers[answered]
-            if not batch.num_rows:
+            if not answered.any():
                 continue
-            self.row_lines = numbers
-            columns = [batch.column(places.index(place)) for place in self.found.places]
+            self.row_lines = numbers[answered]
+            kept = pyarrow().array(answered)
+            columns = [batch.column(places.index(place)).filter(kept) for place in self.found.places]
             block = np.stack([self._numbers(column, i) for i, column in enumerate(columns)], axis=1)
-            if self.passed:
+            if self.passed:  # chosen as values: Arrow chooses no texts of polars
                 cells = [cells_of(batch.column(places.index(place))) for place in self.passed]
-                self.carried.put(list(zip(*cells, strict=True)))
+                self.carried.put(list(compress(zip(*cells, strict=True), answered)))
             yield block
 
     def _none(self, column: Any) -> Any:
@@ -260,7 +261,12 @@ def kind_of_cells(of: Any) -> str:
 
 def _plain(column: Any) -> Any:
     """A column without a dictionary."""
-    return column.dictionary_decode() if pyarrow("pyarrow.types").is_dictionary(column.type) else column
+    if not pyarrow("pyarrow.types").is_dictionary(column.type):
+        return column
+    words = column.dictionary
+    if pyarrow("pyarrow.types").is_string_view(words.type):  # of polars: Arrow takes none by number
+        column = pyarrow().DictionaryArray.from_arrays(column.indices, words.cast("large_string"))
+    return column.dictionary_decode()
 
 
 def _doubles(column: Any) -> Any:

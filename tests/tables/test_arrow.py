@@ -173,6 +173,23 @@ def test_columns_go_through_with_their_types(tmp_path):
     assert second == ["", "-1", "0", "", "", "", "y"]
 
 
+@pytest.mark.parametrize("solution", [False, True])
+def test_texts_of_polars_go_through(tmp_path, solution):
+    """Its files have texts as views, and categories with them, of which Arrow chooses none by a mask or a number."""
+    words = pa.array(["a", "more than twelve bytes", None], "string_view")
+    kinds = pa.DictionaryArray.from_arrays(pa.array([1, None, 0], "uint32"), pa.array(["x", "y"], "string_view"))
+    columns = {"word": words, "kind": kinds, "q1": [1.0, 2.0, 3.0], "q2": [4.0, 5.0, 6.0]}
+    if solution:
+        columns |= {"target": [1, 2, 3], "solution": [1, 0, 1]}
+    path, table = tmp_path / "q.arrow", pa.table(columns)
+    with pa.ipc.new_file(path, table.schema) as file:
+        file.write_table(table)
+    assert call("fk", "planar2r", "-i", path, "-o", tmp_path / "p.csv") == 0
+    rows = [line.split(",")[:3] for line in (tmp_path / "p.csv").read_text().splitlines()[1:]]
+    told = [["a", "y", "1.0"], ["more than twelve bytes", "", "2.0"], ["", "x", "3.0"]]
+    assert rows == (told[::2] if solution else told)
+
+
 def test_an_empty_table_is_a_table(tmp_path):
     path = written(tmp_path / "q.parquet", {"q1": pa.array([], "float64"), "q2": pa.array([], "float64")})
     for command in ("fk", "ik"):
