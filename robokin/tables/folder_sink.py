@@ -16,7 +16,11 @@ def expect_new_folder(output: str, option: str) -> Path:
     """The path of a folder that is to be made. Raises InputError where there is anything."""
     if Writing.refused:
         raise InputError(f"{option} {output}: expected no folder to write, answers are documents on standard output")
-    path, there = Path(output).absolute(), True
+    path, there = Path(output), True
+    try:
+        path = path.absolute()
+    except OSError as error:  # the folder that the command is in is gone
+        raise OutputError(f"{option} {shown(output)}: {error.strerror}") from None
     try:
         path.lstat()
     except FileNotFoundError:

@@ -37,7 +37,8 @@ class PartFolder:
     def __init__(self, output: str, question: dict[str, Any]) -> None:
         self.output, self.path = output, Path(output)
         self.question = json.loads(json.dumps(question))  # as it will be read
-        self.place = PartPlace(str(self.path.absolute()), os.urandom(16).hex())
+        with self._saying():  # the folder that the command is in may be gone
+            self.place = PartPlace(str(self.path.absolute()), os.urandom(16).hex())
         self.recorded: dict[int, WrittenPart] = {}
         """The parts that an earlier run has recorded."""
         self.journal: IO[bytes] | None = None

@@ -379,6 +379,21 @@ def test_options_that_do_not_go_together(call, tmp_path, monkeypatch, words, sai
     assert not (tmp_path / "run").exists()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there a folder stays as long as somebody is in it")
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["workspace", "planar2r", "--samples", "1e4", "-o", "run/"],
+        ["check", "new", "planar2r", "fk:1", "--seed", "1", "-o", "week"],
+    ],
+)
+def test_where_the_folder_one_is_in_is_gone_the_place_is_named(call, tmp_path, monkeypatch, words):
+    (tmp_path / "gone").mkdir()
+    monkeypatch.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    refused(call(*words), f"{words[-2].replace('-o', '--output')} {words[-1]}: No such file or directory")
+
+
 def test_a_folder_of_other_parquet_files_is_read_in_the_order_of_its_numbers(call, tmp_path):
     import pyarrow as pa
 
