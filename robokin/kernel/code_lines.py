@@ -14,7 +14,7 @@ from robokin.kernel.chain_walk import ChainWalk
 
 TYPE_CHECKING = False  # `typing` has the same, and takes a while to load
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, Self
 
     from robokin.kernel.chain_walk import Column
 
@@ -45,43 +45,43 @@ class Term:
         lines.append((self.name, source))
 
     @classmethod
-    def named(cls, lines: Lines, name: str) -> Term:
+    def named(cls, lines: Lines, name: str) -> Self:
         """A term that is there without a line, such as an argument."""
         one = object.__new__(cls)
         one.lines, one.name = lines, name
         return one
 
-    def __mul__(self, other: Term | float) -> Term:
+    def __mul__(self, other: Term | float) -> Self:
         """A product."""
-        return Term(self.lines, f"{self.name} * {written(other)}")
+        return type(self)(self.lines, f"{self.name} * {written(other)}")
 
-    def __rmul__(self, other: float) -> Term:
+    def __rmul__(self, other: float) -> Self:
         """A product with a number in front."""
-        return Term(self.lines, f"{written(other)} * {self.name}")
+        return type(self)(self.lines, f"{written(other)} * {self.name}")
 
-    def __add__(self, other: Term | float) -> Term:
+    def __add__(self, other: Term | float) -> Self:
         """A sum."""
-        return Term(self.lines, f"{self.name} + {written(other)}")
+        return type(self)(self.lines, f"{self.name} + {written(other)}")
 
-    def __radd__(self, other: float) -> Term:
+    def __radd__(self, other: float) -> Self:
         """A sum with a number in front."""
-        return Term(self.lines, f"{written(other)} + {self.name}")
+        return type(self)(self.lines, f"{written(other)} + {self.name}")
 
-    def __sub__(self, other: Term | float) -> Term:
+    def __sub__(self, other: Term | float) -> Self:
         """A difference."""
-        return Term(self.lines, f"{self.name} - {written(other)}")
+        return type(self)(self.lines, f"{self.name} - {written(other)}")
 
-    def __rsub__(self, other: float) -> Term:
+    def __rsub__(self, other: float) -> Self:
         """A difference from a number."""
-        return Term(self.lines, f"{written(other)} - {self.name}")
+        return type(self)(self.lines, f"{written(other)} - {self.name}")
 
-    def __truediv__(self, other: Term | float) -> Term:
+    def __truediv__(self, other: Term | float) -> Self:
         """A quotient."""
-        return Term(self.lines, f"{self.name} / {written(other)}")
+        return type(self)(self.lines, f"{self.name} / {written(other)}")
 
-    def __neg__(self) -> Term:
+    def __neg__(self) -> Self:
         """The term with the other sign."""
-        return Term(self.lines, f"-{self.name}")
+        return type(self)(self.lines, f"-{self.name}")
 
 
 def written(entry: Any) -> str:

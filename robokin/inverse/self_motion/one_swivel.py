@@ -9,16 +9,20 @@ Degenerate case. Where a step doubts, or nothing is within the limits, nothing i
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from robokin.arrays import Array, Index
+from robokin.inverse.self_motion.one_pieces import OneBounds, Piece
 from robokin.inverse.self_motion.spread import spread_of_one
 from robokin.inverse.self_motion.swivel_arm import SwivelArm
-from robokin.inverse.self_motion.swivel_curves import TURN, SwivelCurves, swivel_curves
-from robokin.inverse.self_motion.swivel_members import COUNTS, placed
-from robokin.inverse.self_motion.swivel_pieces import CODES, CURVES, swivel_pieces
+from robokin.inverse.self_motion.swivel_code import one_curves
+from robokin.inverse.self_motion.swivel_curves import SIGNS, TURN, SwivelCurves, joint_values, swivel_curves
+from robokin.inverse.self_motion.swivel_members import APART, COUNTS, ROUNDS_UP
+from robokin.inverse.self_motion.swivel_pieces import CODES, CURVES, swivel_bounds, swivel_pieces
 from robokin.inverse.verify import CLOSES, within_limits
 from robokin.kernel.chain import Chain
 from robokin.kernel.facts import fact
@@ -28,10 +32,10 @@ STILL = 1e-9
 """A joint [rad] that moves by less along a curve stands still."""
 
 LOOKS = np.linspace(-np.pi, np.pi, 13)[:-1]
-"""Values of ψ at which it is seen which joints move."""
+"""Values of ψ at which it is seen which joints move: after the first two mostly all are."""
 
-FIRST_LOOKS, SECOND_LOOKS = np.full((CURVES, 2), LOOKS[:2]).T
-"""The first two for every curve, after which mostly all joints are seen to move."""
+ELBOW, CODE_SIGNS = CODES[:, 0], SIGNS[CODES[:, 1:]].T.copy()
+"""By curve the place of its elbow's sign, and the signs of the middle turns (2, c)."""
 
 ALL_BUT_THE_ELBOW = 127 - 8
 """The joints that may move, as bits."""
@@ -53,27 +57,50 @@ class OneSwivel:
     high: Array
     rest: Array
 
+    @cached_property
+    def bounds(self) -> OneBounds:
+        """The limits as equations."""
+        return OneBounds(swivel_bounds(self.arm, self.limits))
+
     def solution(self, T: Array, most: int) -> Answer | None:
         """The answer for a target T (4, 4) [m], up to `most` solutions; None where the blocks are to look at it."""
-        arm, curves = self.arm, swivel_curves(self.arm, T[None])
-        if curves.doubt[0]:
-            return None
-        pieces = swivel_pieces(curves, self.limits)
-        if pieces.doubt[0] or not len(pieces.row):
-            return None
-        of, psi = placed(pieces, COUNTS[0])
-        own = sorted(set(pieces.code.tolist()))
-        code = np.concatenate([pieces.code[of], own, own])
-        psi = np.concatenate([psi, FIRST_LOOKS[: len(own)], SECOND_LOOKS[: len(own)]])
-        q = curves.configurations(np.zeros(len(code), dtype=np.intp), CODES[code], psi)
-        moving = _moving(curves, own, q[len(of) :])
-        q, code = q[: len(of)], code[: len(of)]
+        known = one_curves(self.arm)(*T.ravel().tolist())
+        if known is None:
+            curves = swivel_curves(self.arm, T[None])
+            if curves.doubt[0]:
+                return None
+            q4, entries = curves.q4[0].tolist(), curves.entries[0]
+            some = swivel_pieces(curves, self.limits)
+            if some.doubt[0]:
+                return None
+            found = some.code.tolist(), some.first.tolist(), some.last.tolist(), some.whole.tolist()
+            pieces: list[Piece] | None = [Piece(*numbers) for numbers in zip(*found, strict=True)]
+        else:
+            doubt, q4, real, numbers = known
+            if doubt or not real:
+                return None
+            entries = numbers.reshape(2, 2, 5, 3)
+            pieces = self.bounds.pieces(q4, entries)
+        return self._listed(T, most, np.array(q4), entries, pieces) if pieces else None
+
+    def _listed(self, T: Array, most: int, q4: Array, entries: Array, pieces: list[Piece]) -> Answer | None:
+        """What is listed of some pieces on curves with elbows q4 (2,) [rad] and `entries` (2, 2, 5, 3)."""
+        arm = self.arm
+        of, psi = _placed(pieces, COUNTS[0])
+        own = sorted({piece.code for piece in pieces})
+        many = len(psi)
+        code = np.array([*of, *own, *own])
+        psi += [LOOKS[0]] * len(own) + [LOOKS[1]] * len(own)
+        elbow = ELBOW[code]
+        factors = entries.transpose(3, 2, 1, 0).take(elbow, axis=3)
+        q = joint_values(arm, factors, q4[elbow], CODE_SIGNS[:, code], np.array(psi))
+        moving = self._moving(T, own, q[many:])
+        q, code = q[:many], code[:many]
         position, angle = _missing(arm.chain, q, T)
         closes = (position <= CLOSES * arm.size) & (angle <= CLOSES)
-        closing = len(q)
         if not closes.all():
             q, position, angle, code = q[closes], position[closes], angle[closes], code[closes]
-            closing = len(q)
+        closing = len(q)
         if not ((q >= self.low) & (q <= self.high)).all():
             q, inside = within_limits(q, arm.chain.revolute, self.limits, None)
             q, position, angle, code = q[inside], position[inside], angle[inside], code[inside]
@@ -83,8 +110,34 @@ class OneSwivel:
         chosen = spread_of_one(x - TURN * np.rint(x / TURN), np.abs(q - self.rest).max(axis=1), most)
         table = np.empty((len(chosen), 10))
         table[:, :7], table[:, 7], table[:, 8], table[:, 9] = q[chosen], position[chosen], angle[chosen], code[chosen]
-        rows = np.array([pieces.code, pieces.first, pieces.last, pieces.whole]).T
-        return table, rows, moving, closing, len(q)
+        return table, np.array(pieces, dtype=np.float64), moving, closing, len(q)
+
+    def _moving(self, T: Array, own: list[int], q: Array) -> list[int]:
+        """By curve the joints, as bits, that move along it: curves `own` (c,), seen at the first looks q (2 c, 7)."""
+        seen = _moved(q, len(own))
+        if any(bits != ALL_BUT_THE_ELBOW for bits in seen):
+            seen = moving_joints(swivel_curves(self.arm, T[None]), 0, np.array(own))
+        moving = [0] * CURVES
+        for code, bits in zip(own, seen, strict=True):
+            moving[code] = bits
+        return moving
+
+
+def _placed(pieces: list[Piece], count: int) -> tuple[list[int], list[float]]:
+    """What `placed` gives for the pieces of one pose: which curve, ψ."""
+    total = 0.0
+    for _, first, last, _ in pieces:
+        total += last - first
+    of: list[int] = []
+    psi: list[float] = []
+    for code, first, last, _ in pieces:
+        length = last - first
+        wanted = math.floor(count * length / max(total, APART) + ROUNDS_UP)
+        many = int(min(max(wanted, 1), max(length / APART, 1.0)))
+        step = length / many
+        of += [code] * many
+        psi += [first + (rank + 0.5) * step for rank in range(many)]
+    return of, psi
 
 
 def one_swivel(arm: SwivelArm, limits: Array, rest: Array) -> OneSwivel:
@@ -101,21 +154,11 @@ def moving_joints(curves: SwivelCurves, i: int, codes: Index) -> list[int]:
 def _moved(q: Array, count: int) -> list[int]:
     """The joints, as bits, that are not alike in all configurations (k count, 7), look after look, of each curve."""
     q = q.reshape(-1, count, 7)
-    away = q - q[0]
-    moves = np.abs(away - TURN * np.rint(away / TURN)).max(axis=0) > STILL
+    away = q[1:] - q[0]
+    away -= TURN * np.rint(away / TURN)
+    moves = np.abs(away, out=away).max(axis=0) > STILL
     bits: list[int] = (moves @ BITS).tolist()
     return bits
-
-
-def _moving(curves: SwivelCurves, own: list[int], q: Array) -> list[int]:
-    """By curve the joints, as bits, that move along it: curves `own` (c,), seen at the first looks q (k c, 7)."""
-    seen = _moved(q, len(own))
-    if any(bits != ALL_BUT_THE_ELBOW for bits in seen):
-        seen = moving_joints(curves, 0, np.array(own))
-    moving = [0] * CURVES
-    for code, bits in zip(own, seen, strict=True):
-        moving[code] = bits
-    return moving
 
 
 @fact

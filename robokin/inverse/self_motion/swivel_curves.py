@@ -30,6 +30,7 @@ from robokin.inverse.self_motion.swivel_arm import SwivelArm, Triples
 from robokin.inverse.verify import HALF_TURN
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import frames
+from robokin.kernel.spared_products import minus, plus, times
 from robokin.rotation_entries import Floats
 
 TURN = 2.0 * np.pi
@@ -75,6 +76,7 @@ class OnePose(Floats):
     arccos = staticmethod(lambda x: float(np.arccos(x)))
     cos = staticmethod(lambda angle: float(np.cos(angle)))
     sin = staticmethod(lambda angle: float(np.sin(angle)))
+    any = staticmethod(bool)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,14 +112,9 @@ class SwivelCurves:
             self.bend[some],
         )
 
-    def turns(self, psi: Array) -> Array:
-        """(3, m, 2, 2, 2, K) the triples at ψ (m, 2, K), by elbow, triple and sign of the middle turn.
-
-        [rad] in [-π, π], offsets included.
-        """
-        entries = self.entries.transpose(4, 3, 0, 1, 2)[..., None]
-        psi = psi[:, :, None]
-        return _turns(entries, psi, self.arm.triples, SIGNS[:, None])
+    def entries_at(self, psi: Array) -> Array:
+        """(5, m, 2, 2, K) the entries 13, 23, 33, 31, 32 of the triples at ψ (m, 2, K), by elbow and triple."""
+        return entries_at(self.entries.transpose(4, 3, 0, 1, 2)[..., None], psi[:, :, None])
 
     def configurations(self, row: Index, signs: Index, psi: Array) -> Array:
         """(s, 7) [rad] in [-π, π] the joint values at ψ (s,) of poses (s,).
@@ -125,16 +122,8 @@ class SwivelCurves:
         signs: (s, 3) by their places in `SIGNS`: of the elbow, the shoulder, the wrist.
         """
         elbow = signs[:, 0]
-        entries = self.entries[row, elbow].transpose(3, 2, 1, 0)[:, :, None, None]
-        turns = _turns(entries, psi, self.arm.triples, SIGNS[signs[:, 1:].T][:, None])[:, 0, 0, :, 0]
-        q = np.empty((7, len(psi)))
-        q[:3], q[3], q[4:] = turns[:, 0], self.q4[row, elbow], turns[:, 1]
-        q -= self.arm.chain.offsets[:, None]
-        q -= TURN * np.rint(q / TURN)
-        low = q < HALF_TURN - np.pi
-        if low.any():
-            q[low] += TURN  # -180° is 180°, whatever the last digits say
-        return q.T
+        factors = self.entries[row, elbow].transpose(3, 2, 1, 0)
+        return joint_values(self.arm, factors, self.q4[row, elbow], SIGNS[signs[:, 1:].T], psi)
 
     def swivel(self, row: Index, elbow: Index, q: Array) -> Array:
         """(s,) ψ [rad] in [-π, π] of configurations q (s, 7) or (7,) [rad] that reach poses (s,) with elbows (s,)."""
@@ -180,13 +169,28 @@ def plain_arm(arm: SwivelArm) -> PlainArm:
 
 def swivel_curves(arm: SwivelArm, T: Array) -> SwivelCurves:
     """The self-motions at poses T (m, 4, 4) [m]."""
-    m, a, size = len(T), plain_arm(arm), arm.size
-    maths: Any = OnePose if m == 1 else np
+    m = len(T)
     t: Any = T.reshape(16).tolist() if m == 1 else T.reshape(m, 16).T
+    q4, real, entries, doubt, straight, axes, bends = curves_by_entry(arm, t, OnePose if m == 1 else np)
+    numbers = [*entries, *q4, *bends, *axes]
+    table = np.empty((m, len(numbers)))
+    for column, number in zip(table.T, numbers, strict=True):
+        column[:] = number
+    table += 0.0  # of -0 that is 0, whatever a pose alone comes by
+    entries, values, bend, axes = table[:, :60], table[:, 60:62], table[:, 62:68], table[:, 68:]
+    flags = np.array([*real, straight, doubt]).reshape(4, m)
+    shaped = entries.reshape(m, 2, 2, 5, 3), flags[3], flags[2], axes.reshape(m, 3, 3), bend.reshape(m, 2, 3)
+    return SwivelCurves(arm, values, flags[:2].T, *shaped)
+
+
+def curves_by_entry(arm: SwivelArm, t: Any, maths: Any) -> tuple[Any, ...]:
+    """What `SwivelCurves` holds, by the entries t of a target [m], row after row: q4, real, entries, doubt, straight,
+    axes, bend."""
+    a, size = plain_arm(arm), arm.size
     R = (t[0:3], t[4:7], t[8:11])
     turned = _times(R, a.wrist)
-    p = _backwards(a.base, [turned[r] + t[4 * r + 3] - a.origin[r] for r in range(3)])
-    p = [p[r] - a.shoulder[r] for r in range(3)]
+    p = _backwards(a.base, [minus(plus(turned[r], t[4 * r + 3]), a.origin[r]) for r in range(3)])
+    p = [minus(p[r], a.shoulder[r]) for r in range(3)]
     hand = [_backwards(a.base, _times(R, column)) for column in zip(*a.hand, strict=True)]
     square = _dot(p, p)
     length, off = maths.sqrt(square), maths.hypot(p[0], p[1])
@@ -204,17 +208,12 @@ def swivel_curves(arm: SwivelArm, T: Array) -> SwivelCurves:
         triples, bend, far = _triples_at(a, size, q4[e], p_axes, along, maths)
         doubt = doubt | (real[e] & (far >= ON_LINE * size) & (far < OFF_LINE * size))
         for entry, k, r in zip(triples, arm.triples.k.tolist(), arm.triples.r.tolist(), strict=True):
-            swing, middle = maths.hypot(entry[7], entry[8]), entry[6] - k
+            swing, middle = maths.hypot(entry[7], entry[8]), minus(entry[6], k)
             nearest = maths.minimum(r - (middle + swing), r + (middle - swing)) / r
             doubt = doubt | (real[e] & (nearest < straightest))
             numbers += entry
         bends += bend
-    table = np.array([*numbers, *q4, *bends, *(axis[r] for r in range(3) for axis in p_axes)]).reshape(-1, m)
-    table = np.ascontiguousarray(table.T)
-    entries, values, bend, axes = table[:, :60], table[:, 60:62], table[:, 62:68], table[:, 68:]
-    flags = np.array([*real, straight, doubt]).reshape(4, m)
-    shaped = entries.reshape(m, 2, 2, 5, 3), flags[3], flags[2], axes.reshape(m, 3, 3), bend.reshape(m, 2, 3)
-    return SwivelCurves(arm, values, flags[:2].T, *shaped)
+    return q4, real, numbers, doubt, straight, [axis[r] for r in range(3) for axis in p_axes], bends
 
 
 def _elbows(a: PlainArm, square: Any, maths: Any) -> tuple[list[Any], list[Any], Any, Any]:
@@ -243,11 +242,11 @@ def _triples_at(
     p_axes: p̂, r̂, n̂ in the base; along: the hand's columns along each of these.
     """
     c4, s4, w = maths.cos(q4), maths.sin(q4), a.lower
-    v = _times(a.forearm, [c4 * w[0] - s4 * w[1], s4 * w[0] + c4 * w[1], w[2]])
-    v = [v[r] + a.forearm_origin[r] - a.upper[r] for r in range(3)]
+    v = _times(a.forearm, [_wedge(c4, w[0], s4, w[1]), plus(times(s4, w[0]), times(c4, w[1])), w[2]])
+    v = [minus(plus(v[r], a.forearm_origin[r]), a.upper[r]) for r in range(3)]
     v_axes, far = _axes(v, a.elbow, maths)
     on_line = far < ON_LINE * size
-    if np.any(on_line):
+    if maths.any(on_line):
         across = _cross([row[2] for row in a.forearm], v)
         towards = [maths.where(on_line, *pair) for pair in zip(across, a.elbow, strict=True)]
         v_axes, _ = _axes(v, towards, maths)
@@ -255,7 +254,8 @@ def _triples_at(
     seen = []
     for column in v_axes:
         x = _backwards(a.forearm, column)
-        seen.append(_backwards(a.next, [c4 * x[0] + s4 * x[1], c4 * x[1] - s4 * x[0], x[2]]))
+        turned = [plus(times(c4, x[0]), times(s4, x[1])), _wedge(c4, x[1], s4, x[0]), x[2]]
+        seen.append(_backwards(a.next, turned))
     last = [row[2] for row in along]
     shoulder = _swung(p_axes, [axis[2] for axis in v_axes], 1.0, 3)
     shoulder += _swung(v_axes, [axis[2] for axis in p_axes], -1.0, 2)
@@ -265,11 +265,16 @@ def _triples_at(
 
 
 def _dot(a: Vector, b: Vector) -> Any:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return plus(plus(times(a[0], b[0]), times(a[1], b[1])), times(a[2], b[2]))
 
 
 def _cross(a: Vector, b: Vector) -> Vector:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    return [_wedge(a[1], b[2], a[2], b[1]), _wedge(a[2], b[0], a[0], b[2]), _wedge(a[0], b[1], a[1], b[0])]
+
+
+def _wedge(a: Any, b: Any, c: Any, d: Any) -> Any:
+    """a b - c d."""
+    return minus(times(a, b), times(c, d))
 
 
 def _times(A: Any, x: Vector) -> Vector:
@@ -279,21 +284,26 @@ def _times(A: Any, x: Vector) -> Vector:
 
 def _backwards(A: Any, x: Vector) -> Vector:
     """Aᵀ x of a matrix as rows."""
-    return [A[0][c] * x[0] + A[1][c] * x[1] + A[2][c] * x[2] for c in range(3)]
+    return [_dot(column, x) for column in zip(*A, strict=True)]
+
+
+def _over(a: Any, b: Any) -> Any:
+    """a / b."""
+    return 0.0 if isinstance(a, float) and a == 0.0 else a / b
 
 
 def _axes(line: Vector, towards: Vector, maths: Any) -> tuple[list[Vector], Any]:
     """Orthonormal directions along the line, at right angles to it towards something, across; and how far that is from
     the line."""
     length = maths.maximum(maths.sqrt(_dot(line, line)), 1e-300)
-    first = [entry / length for entry in line]
+    first = [_over(entry, length) for entry in line]
     along = _dot(towards, first)
-    second = [towards[r] - along * first[r] for r in range(3)]
+    second = [minus(towards[r], times(along, first[r])) for r in range(3)]
     along = _dot(second, first)  # what rounding left, of a nearly straight elbow
-    second = [second[r] - along * first[r] for r in range(3)]
+    second = [minus(second[r], times(along, first[r])) for r in range(3)]
     off = maths.sqrt(_dot(second, second))
     length = maths.maximum(off, 1e-300)
-    second = [entry / length for entry in second]
+    second = [_over(entry, length) for entry in second]
     return [first, second, _cross(first, second)], off
 
 
@@ -304,32 +314,60 @@ def _swung(axes: list[Vector], other: Vector, sign: float, rows: int) -> list[An
     """
     out = []
     for r in range(rows):
-        out.append(axes[0][r] * other[0])
-        out.append(axes[1][r] * other[1] + axes[2][r] * other[2])
-        out.append(sign * (axes[2][r] * other[1] - axes[1][r] * other[2]))
+        out.append(times(axes[0][r], other[0]))
+        out.append(plus(times(axes[1][r], other[1]), times(axes[2][r], other[2])))
+        out.append(times(sign, _wedge(axes[2][r], other[1], axes[1][r], other[2])))
     return out
 
 
-def _turns(entries: Array, psi: Array, triples: Triples, signs: Array) -> Array:
-    """Turns (3, ..., 2, c, K) of triples at ψ (..., 1, K) or (K,).
-
-    entries: (3, 5, M, E, 2, K or 1) the factors of 1, cos ψ and sin ψ; signs: (c, 1) or (2, 1, K) of the middle turns'
-    sines.
-    """
+def entries_at(entries: Array, psi: Array) -> Array:
+    """Entries (5, ...) of triples at ψ (...) by their factors (3, 5, ...) of 1, cos ψ and sin ψ."""
     g = entries[1] * np.cos(psi)
     g += entries[0]
     g += entries[2] * np.sin(psi)
-    cosine = (g[2] - triples.k[:, None]) / triples.r[:, None]
-    x = np.maximum(np.minimum(cosine, 1.0), -1.0)[..., None, :]
-    y = np.sqrt((1.0 - x) * (1.0 + x)) * signs
-    Y, X = np.empty((2, 3, *y.shape))
+    return np.asarray(g)
+
+
+def joint_values(arm: SwivelArm, factors: Array, q4: Array, signs: Array, psi: Array) -> Array:
+    """(s, 7) [rad] in [-π, π] the joint values at ψ (s,) of curves with factors (3, 5, 2, s), the elbow at q4 (s,).
+
+    signs: (2, s) of the sines of the middle turns.
+    """
+    turns = _turns(factors, psi, arm.triples, signs)
+    q = np.empty((7, len(psi)))
+    np.subtract(turns[:, 0], arm.offsets[:3], out=q[:3])
+    np.subtract(q4, arm.offsets[3], out=q[3])
+    np.subtract(turns[:, 1], arm.offsets[4:], out=q[4:])
+    full = q / TURN
+    np.rint(full, out=full)
+    full *= TURN
+    q -= full
+    low = q < HALF_TURN - np.pi
+    if low.any():
+        q[low] += TURN  # -180° is 180°, whatever the last digits say
+    return q.T
+
+
+def _turns(factors: Array, psi: Array, triples: Triples, signs: Array) -> Array:
+    """Turns (3, 2, s) of triples at ψ (s,) by the factors (3, 5, 2, s) of 1, cos ψ and sin ψ and the signs (2, s) of
+    the middle turns' sines."""
+    g = entries_at(factors, psi)
+    x = g[2] - triples.k[:, None]
+    x /= triples.r[:, None]
+    np.minimum(x, 1.0, out=x)
+    np.maximum(x, -1.0, out=x)
+    y = 1.0 + x
+    y *= 1.0 - x
+    np.sqrt(y, out=y)
+    y *= signs
+    Y, X = np.empty((2, 3, *x.shape))
     np.subtract(x * triples.cos_phi, y * triples.sin_phi, out=X[1])
     np.add(y * triples.cos_phi, x * triples.sin_phi, out=Y[1])
     still, cosines, sines = triples.levers
     levers = cosines * X[1]
     levers += still
     levers += sines * Y[1]
-    G, H = g[0::3, ..., None, :], g[1::3, ..., None, :]
+    G, H = g[0::3], g[1::3]
     np.add(G * levers[0], H * levers[1], out=X[0::2])
     up, down = H * levers[0], G * levers[1]
     np.subtract(up[0], down[0], out=Y[0])

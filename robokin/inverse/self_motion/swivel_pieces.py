@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
-from robokin.inverse.self_motion.swivel_arm import SwivelArm
+from robokin.inverse.self_motion.swivel_arm import SwivelArm, Triples
 from robokin.inverse.self_motion.swivel_curves import TURN, SwivelCurves
 from robokin.kernel.facts import fact
 from robokin.model.robot import LIMIT_TOLERANCE
@@ -89,7 +89,7 @@ class SwivelPieces:
 
 def swivel_pieces(curves: SwivelCurves, limits: Array) -> SwivelPieces:
     """The pieces within limits (7, 2) [rad]."""
-    bounds = _bounds(curves.arm, np.asarray(limits, dtype=np.float64).tobytes())
+    bounds = swivel_bounds(curves.arm, limits)
     if len(curves.q4) <= AT_ONCE:
         return _pieces(curves, bounds)
     starts = range(0, len(curves.q4), AT_ONCE)
@@ -97,6 +97,11 @@ def swivel_pieces(curves: SwivelCurves, limits: Array) -> SwivelPieces:
     row = np.concatenate([part.row + start for part, start in zip(parts, starts, strict=True)])
     names = ("code", "first", "last", "whole", "doubt")
     return SwivelPieces(row, *(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+
+def swivel_bounds(arm: SwivelArm, limits: Array) -> SwivelBounds:
+    """The equations of limits (7, 2) [rad]."""
+    return _bounds(arm, np.asarray(limits, dtype=np.float64).tobytes())
 
 
 @fact
@@ -110,7 +115,8 @@ class SwivelBounds:
 
     matrix: (E, 10), value: (E,) of equations in the ten entries of the triples; middle, half: (3, 1, 1, 2, 1, 1) of the
     triples' turns and (2,) of the elbow [rad], offsets included; half is infinite where limits keep no angle out;
-    stops: the same, which joints have limits a full turn apart; stopping: whether some have.
+    stops: the same, which joints have limits a full turn apart; stopping: whether some have; levers: (3, 3, 2) complex,
+    by factor, turn and triple those of 1, cos b and sin b, b counted from phi, in what `turned_away` takes an angle of.
     """
 
     def __init__(self, arm: SwivelArm, limits: Array) -> None:
@@ -125,6 +131,7 @@ class SwivelBounds:
             number[TRIPLES].T[:, None, None, :, None, None] for number in (middle, half, stops)
         )
         self.elbow = float(middle[3]), float(half[3])
+        self.arm, self.levers = arm, _levers(arm.triples, middle[TRIPLES].T)
         rows, values = [], []
         for t, joints in enumerate(TRIPLES):
             for place, joint in enumerate(joints):
@@ -135,6 +142,19 @@ class SwivelBounds:
                     rows.append(row.reshape(10))
                     values.append(value)
         self.matrix, self.value = np.array(rows).reshape(-1, 10), np.array(values)
+
+
+def _levers(triples: Triples, middle: Array) -> Array:
+    """The factors (3, 3, 2) of `turned_away` for the middles (3, 2) of the limits [rad], by turn and triple."""
+    first, last = (np.conj(lever[0] + 1j * lever[1]) for lever in (triples.u, triples.v))
+    amid = np.broadcast_to(np.array([[0.0], [1.0], [1j]]), (3, 2))
+    turns = []
+    for lever, back in zip((first, amid, last), (-middle[0], -middle[1], middle[2]), strict=True):
+        # The turn in the middle counts from phi there, in the others' levers from zero.
+        c, s = np.cos(triples.phi), np.sin(triples.phi)
+        along, across = lever[1] * c + lever[2] * s, lever[2] * c - lever[1] * s
+        turns.append(np.stack([lever[0], along, across]) * np.exp(1j * back))
+    return np.stack(turns, axis=1)
 
 
 def _meeting_limit(arm: SwivelArm, t: int, place: int, end: float) -> tuple[Array, float]:
@@ -154,7 +174,7 @@ def _pieces(curves: SwivelCurves, bounds: SwivelBounds) -> SwivelPieces:
     """The pieces of some poses, few enough for one table."""
     m, vague = len(curves.q4), np.where(curves.straight, VAGUEST, VAGUE)
     least = -vague[:, None]
-    psi, touched = _meetings(curves, bounds, vague)
+    psi, touched = meetings(curves.entries, bounds, vague)
     gap = np.empty(psi.shape)
     np.subtract(psi[..., 1:], psi[..., :-1], out=gap[..., :-1])
     gap[..., -1] = psi[..., 0] + TURN - psi[..., -1]
@@ -209,15 +229,15 @@ def _neighbours(amid: Array, short: Flags) -> Array:
     return amid.reshape(-1)[place].reshape(amid.shape)
 
 
-def _meetings(curves: SwivelCurves, bounds: SwivelBounds, vague: Array) -> tuple[Array, Flags]:
+def meetings(entries: Array, bounds: SwivelBounds, vague: Array) -> tuple[Array, Flags]:
     """(m, 2, K) in order the values of ψ in [-π, π] at which a joint may be at a limit; -π in place of missing ones.
 
     With (m, 2) whether a joint touches one and turns back, or keeps to it, to within vague (m,) [rad].
     """
-    m, many = len(curves.q4), len(bounds.value)
+    m, many = len(entries), len(bounds.value)
     if not many:
         return np.full((m, 2, 1), -np.pi), np.zeros((m, 2), dtype=bool)
-    still, cosine, sine = (bounds.matrix @ curves.entries.reshape(m, 2, 10, 3)).transpose(3, 0, 1, 2)
+    still, cosine, sine = (bounds.matrix @ entries.reshape(m, 2, 10, 3)).transpose(3, 0, 1, 2)
     swing, off = np.hypot(cosine, sine), bounds.value - still
     # Where nothing swings, no place meets a limit.
     x = off / np.maximum(swing, 1e-300)
@@ -240,16 +260,36 @@ def _margins(curves: SwivelCurves, bounds: SwivelBounds, psi: Array) -> tuple[Ar
     With the flags (m, 2, 2, 2, K / 2) whether at the first half of ψ a joint with limits a full turn apart meets these;
     None for an arm without such a joint.
     """
-    turns = curves.turns(psi)
-    turns -= bounds.middle
-    turns -= TURN * np.rint(turns / TURN)
-    away = np.abs(turns, out=turns)
+    away = turned_away(curves.entries_at(psi), bounds)
     margin = np.minimum.reduce(bounds.half - away, axis=0)
     margin = np.minimum(margin[:, :, 0, :, None], margin[:, :, 1, None])
     if not bounds.stopping:
         return margin, None
     meets = np.logical_or.reduce((away[..., : psi.shape[2] // 2] >= np.pi - MEETS) & bounds.stops, axis=0)
     return margin, meets[:, :, 0, :, None] | meets[:, :, 1, None]
+
+
+def turned_away(g: Array, bounds: SwivelBounds) -> Array:
+    """How far (3, ..., 2, 2, K) [rad] the turns of triples are from the middle of their limits, by both signs.
+
+    g: (5, ..., 2, K) the entries 13, 23, 33, 31, 32 of the triples. As the turns of `swivel_curves`, in complex numbers
+    that are turned back by the middles, so that no full turns are left to look at.
+    """
+    triples = bounds.arm.triples
+    x = (g[2] - triples.k[:, None]) / triples.r[:, None]
+    np.minimum(x, 1.0, out=x)
+    np.maximum(x, -1.0, out=x)
+    still, along, across = bounds.levers.reshape(3, 3, *[1] * (x.ndim - 2), 2, 1)
+    middle = along * x
+    middle += still
+    side = across * np.sqrt((1.0 - x) * (1.0 + x))
+    turned = np.empty((3, *x.shape[:-1], 2, x.shape[-1]), dtype=complex)
+    np.add(middle, side, out=turned[..., 0, :])
+    np.subtract(middle, side, out=turned[..., 1, :])
+    ends = np.empty((2, *x.shape), dtype=complex)
+    ends.real, ends.imag = g[0::3], g[1::3]
+    turned[0::2] *= ends[..., None, :]
+    return np.asarray(np.abs(np.arctan2(turned.imag, turned.real)))
 
 
 def _runs(psi: Array, begins: Index, ends: Index, all_round: Flags, points: Index) -> tuple[Index, Array, Array, Flags]:
