@@ -12,11 +12,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
 
-from robokin.arrays import Array
+from robokin.arrays import Array, Flags
 from robokin.inverse.self_motion.swivel_curves import entries_at
 from robokin.inverse.self_motion.swivel_pieces import (
     ALIKE,
@@ -32,24 +33,19 @@ from robokin.inverse.self_motion.swivel_pieces import (
 _VAGUE = np.array([VAGUE])
 
 
-class Piece(NamedTuple):
-    """An interval of ψ [rad] of a curve, and whether it is all of it: the numbers of `SwivelPieces`."""
-
-    code: int
-    first: float
-    last: float
-    whole: float
+Piece = tuple[int, float, float, float]
+"""An interval of ψ [rad]: curve, first and last, and 1 where it is all of the curve, as `SwivelPieces` has them."""
 
 
 class Looked(NamedTuple):
-    """A curve at its places of ψ: whether it is within the limits between each and the next, and there; where a joint
-    stops there; where it is beyond a limit by so little that it may be rounding, between and there."""
+    """A curve at its places of ψ, as bits: whether it is within the limits between each and the next, and there; where it
+    is beyond a limit by so little that it may be rounding, between and there; where a joint stops there."""
 
-    within: list[bool]
-    at: list[bool]
-    stops: list[bool]
-    vague: list[bool]
-    vague_at: list[bool]
+    within: int
+    at: int
+    vague: int
+    vague_at: int
+    stops: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,101 +70,112 @@ class OneBounds:
         entries: (2, 2, 5, 3) as `SwivelCurves` has them.
         """
         psi, touched = meetings(entries[None], self.bounds, _VAGUE)
-        elbows, places, midway = [], [], []
+        elbows: list[tuple[int, list[float]]] = []
+        midway: list[float] = []
         for e, (row, touches) in enumerate(zip(psi[0].tolist(), touched[0].tolist(), strict=True)):
             away = q4[e] - self.bounds.elbow[0]
             room = self.bounds.elbow[1] - abs(away - TURN * round(away / TURN))
             if room >= -SURE:
                 if touches:
                     return None
-                some, amid = _apart(row)
-                elbows.append((e, len(some)))
-                places.append(some)
-                midway.append(amid)
+                places, amid = _apart(row)
+                elbows.append((e, places))
+                midway += amid
             elif room > -VAGUE:
                 return None
         found: list[Piece] = []
         if not elbows:
             return found
-        looked = self._looked(entries, elbows, np.array([x for one in (*places, *midway) for x in one]))
-        for (e, _), some, own in zip(elbows, places, looked, strict=True):
-            for pair, one in enumerate(own):
-                if not _along(4 * e + pair, some, one, found):
+        rows = self._looked(entries, elbows, midway)
+        start, count = 0, len(midway)
+        for e, places in elbows:
+            many = (1 << len(places)) - 1
+            for pair, (sure, vague, stop) in enumerate(rows):
+                looked = Looked(*(bits >> shift & many for bits, shift in (
+                    (sure, count + start), (sure, start), (vague, count + start), (vague, start), (stop, start))))
+                if not _along(4 * e + pair, places, looked, found):
                     return None
+            start += len(places)
         return found
 
-    def _looked(self, entries: Array, elbows: list[tuple[int, int]], psi: Array) -> list[list[Looked]]:
-        """What is known of the curves of some elbows, with so many places each, at ψ: places, then midway ones."""
-        elbow = np.repeat([e for e, _ in elbows] * 2, [count for _, count in elbows] * 2)
+    def _looked(self, entries: Array, elbows: list[tuple[int, list[float]]], midway: list[float]) -> list[tuple[int, ...]]:
+        """For each pair of signs of shoulder and wrist, as bits of the places of the elbows one after the other, then of
+        those midway: which are within the limits, which are beyond by so little that it may be rounding, and where a
+        joint stops."""
+        elbow = np.repeat([e for e, _ in elbows] * 2, [len(places) for _, places in elbows] * 2)
+        psi = np.array([*(one for _, places in elbows for one in places), *midway])
         away = turned_away(entries_at(entries.transpose(3, 2, 1, 0).take(elbow, axis=3), psi), self.bounds)
         least = np.minimum.reduce(self.half - away, axis=0)
-        margin = np.minimum(least[0][:, None], least[1]).reshape(4, -1)
+        margin = np.minimum(least[0][:, None], least[1])
         sure = margin >= -SURE
-        vague = (margin > -VAGUE) > sure
-        inside, count = sure.tolist(), len(psi) // 2
-        doubtful = vague.tolist() if vague.any() else [[False] * len(psi)] * 4
-        stop = [[False] * count] * 4
+        bits = [_bits(sure), _bits((margin > -VAGUE) > sure), (0, 0, 0, 0)]
         if self.bounds.stopping:
-            meets = np.logical_or.reduce((away[..., :count] >= np.pi - MEETS) & self.stops, axis=0)
-            stop = (meets[0][:, None] | meets[1]).reshape(4, -1).tolist()
-        looked, start = [], 0
-        for _, many in elbows:
-            at, amid = slice(start, start + many), slice(count + start, count + start + many)
-            looked.append(
-                [Looked(inside[k][amid], inside[k][at], stop[k][at], doubtful[k][amid], doubtful[k][at]) for k in range(4)]
-            )
-            start += many
-        return looked
+            meets = np.logical_or.reduce((away >= np.pi - MEETS) & self.stops, axis=0)
+            bits[2] = _bits(meets[0][:, None] | meets[1])
+        return [*zip(*bits, strict=True)]
+
+
+def _bits(flags: Flags) -> tuple[int, ...]:
+    """Flags (2, 2, K) as four numbers, the first of each as its lowest bit."""
+    packed = np.packbits(flags.reshape(4, -1), axis=1, bitorder="little")
+    row, width = packed.tobytes(), packed.shape[1]
+    return tuple(int.from_bytes(row[k : k + width], "little") for k in range(0, 4 * width, width))
 
 
 def _apart(row: list[float]) -> tuple[list[float], list[float]]:
     """The places of ψ in order, and what is midway from each to the next, without those that have no inside."""
     places, midway = [], []
-    for here, there in zip(row, [*row[1:], row[0] + TURN], strict=True):
+    here = row[0]
+    for there in (*row[1:], here + TURN):
         gap = there - here
         if gap >= ALIKE:
             places.append(here)
             midway.append(here + 0.5 * gap)
+        here = there
     return places, midway
 
 
 def _along(code: int, places: list[float], looked: Looked, found: list[Piece]) -> bool:
     """Put the pieces of a curve to those that were found; no where there is doubt."""
-    within, at, stops, vague, vague_at = looked
-    if True in vague:
+    within, at, vague, vague_at, stops = looked
+    count = len(places)
+    everywhere = (1 << count) - 1
+    before = (within << 1 | within >> (count - 1)) & everywhere
+    outside = everywhere & ~(within | before)
+    if vague or vague_at & (outside | (within & before)):
         return False
-    if not (True in within or True in at or True in vague_at):
+    stops &= within & before
+    points = at & outside
+    if not within and not points:
         return True
-    begins, ends, pieces = [], [], []
-    before, whole = within[-1], True
-    for k, inside in enumerate(within):
-        if inside != before:
-            (begins if inside else ends).append(k)
-        elif vague_at[k]:
-            return False
-        elif inside and stops[k]:
-            begins.append(k)
-            ends.append(k)
-            whole = False
-        elif at[k] and not inside:
-            # On a limit is within it, also in a single point.
-            pieces.append(Piece(code, places[k], places[k], 0.0))
-        whole = whole and inside
-        before = inside
+    begins, ends = _places(within & ~before | stops), _places(before & ~within | stops)
     later = bool(begins) and ends[0] <= begins[0]
-    for rank, k in enumerate(begins):
+    # On a limit is within it, also in a single point.
+    pieces = [(code, places[k], places[k], 0.0) for k in _places(points)]
+    for k, end in zip(begins, [*ends[later:], *ends[:later]], strict=True):
         # A run that goes on beyond π ends where the first end of its curve is.
-        first, last = places[k], places[ends[(rank + later) % len(ends)]]
-        pieces.append(Piece(code, first, last + TURN if last <= first else last, 0.0))
-    if whole:
-        pieces.append(Piece(code, -math.pi, math.pi, 1.0))
-    pieces.sort(key=lambda piece: piece.first)
+        first, last = places[k], places[end]
+        pieces.append((code, first, last + TURN if last <= first else last, 0.0))
+    if within == everywhere and not stops:
+        pieces.append((code, -math.pi, math.pi, 1.0))
+    if points:
+        pieces.sort(key=itemgetter(1))
     end = -math.inf
-    for _, first, last, all_round in pieces:
+    for _, first, last, whole in pieces:
         length = last - first
         left_out = TURN - length
-        if 0.0 < length < VAGUE or (not all_round and ALIKE < left_out < VAGUE) or 0.0 != first - end < VAGUE:
+        if 0.0 < length < VAGUE or (not whole and ALIKE < left_out < VAGUE) or 0.0 != first - end < VAGUE:
             return False
         end = last
     found += pieces
     return True
+
+
+def _places(bits: int) -> list[int]:
+    """Which bits are set, in order."""
+    found = []
+    while bits:
+        low = bits & -bits
+        found.append(low.bit_length() - 1)
+        bits ^= low
+    return found

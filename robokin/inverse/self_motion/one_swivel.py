@@ -9,20 +9,19 @@ Degenerate case. Where a step doubts, or nothing is within the limits, nothing i
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from robokin.arrays import Array, Index
-from robokin.inverse.self_motion.one_pieces import OneBounds, Piece
+from robokin.inverse.self_motion.one_pieces import OneBounds
 from robokin.inverse.self_motion.spread import spread_of_one
 from robokin.inverse.self_motion.swivel_arm import SwivelArm
 from robokin.inverse.self_motion.swivel_code import one_curves
 from robokin.inverse.self_motion.swivel_curves import SIGNS, TURN, SwivelCurves, joint_values, swivel_curves
-from robokin.inverse.self_motion.swivel_members import APART, COUNTS, ROUNDS_UP
-from robokin.inverse.self_motion.swivel_pieces import CODES, CURVES, swivel_bounds, swivel_pieces
+from robokin.inverse.self_motion.swivel_members import COUNTS, placed
+from robokin.inverse.self_motion.swivel_pieces import CODES, CURVES, SwivelPieces, swivel_bounds, swivel_pieces
 from robokin.inverse.verify import CLOSES, within_limits
 from robokin.kernel.chain import Chain
 from robokin.kernel.facts import fact
@@ -33,6 +32,11 @@ STILL = 1e-9
 
 LOOKS = np.linspace(-np.pi, np.pi, 13)[:-1]
 """Values of ψ at which it is seen which joints move: after the first two mostly all are."""
+
+FIRST_LOOKS, SECOND_LOOKS = np.full((CURVES, 2), LOOKS[:2]).T
+"""The first two for every curve."""
+
+NO_DOUBT = np.zeros(1, dtype=bool)
 
 ELBOW, CODE_SIGNS = CODES[:, 0], SIGNS[CODES[:, 1:]].T.copy()
 """By curve the place of its elbow's sign, and the signs of the middle turns (2, c)."""
@@ -67,33 +71,30 @@ class OneSwivel:
         known = one_curves(self.arm)(*T.ravel().tolist())
         if known is None:
             curves = swivel_curves(self.arm, T[None])
-            if curves.doubt[0]:
+            pieces = None if curves.doubt[0] else swivel_pieces(curves, self.limits)
+            if pieces is None or pieces.doubt[0] or not len(pieces.row):
                 return None
-            q4, entries = curves.q4[0].tolist(), curves.entries[0]
-            some = swivel_pieces(curves, self.limits)
-            if some.doubt[0]:
-                return None
-            found = some.code.tolist(), some.first.tolist(), some.last.tolist(), some.whole.tolist()
-            pieces: list[Piece] | None = [Piece(*numbers) for numbers in zip(*found, strict=True)]
-        else:
-            doubt, q4, real, numbers = known
-            if doubt or not real:
-                return None
-            entries = numbers.reshape(2, 2, 5, 3)
-            pieces = self.bounds.pieces(q4, entries)
-        return self._listed(T, most, np.array(q4), entries, pieces) if pieces else None
+            return self._listed(T, most, curves.q4[0], curves.entries[0], pieces)
+        doubt, q4, real, numbers = known
+        entries = numbers.reshape(2, 2, 5, 3)
+        found = None if doubt or not real else self.bounds.pieces(q4, entries)
+        if not found:
+            return None
+        code, first, last, whole = np.array([number for piece in found for number in piece]).reshape(-1, 4).T
+        row = np.zeros(len(code), dtype=np.intp)
+        pieces = SwivelPieces(row, code.astype(np.intp), first, last, whole, NO_DOUBT)
+        return self._listed(T, most, np.array(q4), entries, pieces)
 
-    def _listed(self, T: Array, most: int, q4: Array, entries: Array, pieces: list[Piece]) -> Answer | None:
+    def _listed(self, T: Array, most: int, q4: Array, entries: Array, pieces: SwivelPieces) -> Answer | None:
         """What is listed of some pieces on curves with elbows q4 (2,) [rad] and `entries` (2, 2, 5, 3)."""
         arm = self.arm
-        of, psi = _placed(pieces, COUNTS[0])
-        own = sorted({piece.code for piece in pieces})
-        many = len(psi)
-        code = np.array([*of, *own, *own])
-        psi += [LOOKS[0]] * len(own) + [LOOKS[1]] * len(own)
+        of, psi = placed(pieces, COUNTS[0])
+        own, many = sorted(set(pieces.code.tolist())), len(psi)
+        code = np.concatenate([pieces.code[of], own, own])
+        psi = np.concatenate([psi, FIRST_LOOKS[: len(own)], SECOND_LOOKS[: len(own)]])
         elbow = ELBOW[code]
         factors = entries.transpose(3, 2, 1, 0).take(elbow, axis=3)
-        q = joint_values(arm, factors, q4[elbow], CODE_SIGNS[:, code], np.array(psi))
+        q = joint_values(arm, factors, q4[elbow], CODE_SIGNS[:, code], psi)
         moving = self._moving(T, own, q[many:])
         q, code = q[:many], code[:many]
         position, angle = _missing(arm.chain, q, T)
@@ -110,7 +111,8 @@ class OneSwivel:
         chosen = spread_of_one(x - TURN * np.rint(x / TURN), np.abs(q - self.rest).max(axis=1), most)
         table = np.empty((len(chosen), 10))
         table[:, :7], table[:, 7], table[:, 8], table[:, 9] = q[chosen], position[chosen], angle[chosen], code[chosen]
-        return table, np.array(pieces, dtype=np.float64), moving, closing, len(q)
+        rows = np.array([pieces.code, pieces.first, pieces.last, pieces.whole]).T
+        return table, rows, moving, closing, len(q)
 
     def _moving(self, T: Array, own: list[int], q: Array) -> list[int]:
         """By curve the joints, as bits, that move along it: curves `own` (c,), seen at the first looks q (2 c, 7)."""
@@ -121,23 +123,6 @@ class OneSwivel:
         for code, bits in zip(own, seen, strict=True):
             moving[code] = bits
         return moving
-
-
-def _placed(pieces: list[Piece], count: int) -> tuple[list[int], list[float]]:
-    """What `placed` gives for the pieces of one pose: which curve, ψ."""
-    total = 0.0
-    for _, first, last, _ in pieces:
-        total += last - first
-    of: list[int] = []
-    psi: list[float] = []
-    for code, first, last, _ in pieces:
-        length = last - first
-        wanted = math.floor(count * length / max(total, APART) + ROUNDS_UP)
-        many = int(min(max(wanted, 1), max(length / APART, 1.0)))
-        step = length / many
-        of += [code] * many
-        psi += [first + (rank + 0.5) * step for rank in range(many)]
-    return of, psi
 
 
 def one_swivel(arm: SwivelArm, limits: Array, rest: Array) -> OneSwivel:

@@ -38,8 +38,7 @@ class Triples:
     """The two triples of turns Rz(a) K Rz(b) L Rz(c), each number with the shoulder's first.
 
     K, L: (2, 3, 3); k, r, phi: (2,) zᵀ R z = k + r cos(b - phi) [rad]; u: (2, 3, 2) of x and y of K Rz(b) L z the
-    factors of 1, cos b and sin b; v: (2, 3, 2) the same of Lᵀ Rz(-b) Kᵀ z; levers: (3, 2, 2, 2, 1) by factor,
-    by x and y, and by u and v; cos_phi, sin_phi: (2, 1).
+    factors of 1, cos b and sin b; v: (2, 3, 2) the same of Lᵀ Rz(-b) Kᵀ z; cos_phi, sin_phi: (2,).
     """
 
     K: Array
@@ -51,19 +50,14 @@ class Triples:
     v: Array
 
     @cached_property
-    def levers(self) -> Array:
-        """The factors as columns take them."""
-        return np.stack([self.u, self.v], axis=1).transpose(2, 0, 1, 3)[..., None].copy()
-
-    @cached_property
     def cos_phi(self) -> Array:
         """The cosines of phi."""
-        return np.cos(self.phi)[:, None]
+        return np.cos(self.phi)
 
     @cached_property
     def sin_phi(self) -> Array:
         """The sines of phi."""
-        return np.sin(self.phi)[:, None]
+        return np.sin(self.phi)
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,11 +78,6 @@ class SwivelArm:
     elbow: Array
     hand: Array
     triples: Triples
-
-    @cached_property
-    def offsets(self) -> Array:
-        """The chain's offsets (7, 1) [rad]."""
-        return self.chain.offsets[:, None]
 
 
 @fact

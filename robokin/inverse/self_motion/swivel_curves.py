@@ -63,6 +63,9 @@ S to W as a part of the size: joints are known to 1e-5 then, and to 1e-3 with wh
 SIGNS = np.array([1.0, -1.0])
 """Of the first and of the second value of an elbow or of a middle turn."""
 
+TRIPLES = np.array([[0, 1, 2], [4, 5, 6]])
+"""The joints of the shoulder and of the wrist, from 0."""
+
 UP, AHEAD = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 """Axis 1, and the direction that ψ counts from where W is on it, in the base."""
 
@@ -333,43 +336,57 @@ def joint_values(arm: SwivelArm, factors: Array, q4: Array, signs: Array, psi: A
 
     signs: (2, s) of the sines of the middle turns.
     """
-    turns = _turns(factors, psi, arm.triples, signs)
+    amid, side, ends = turning_numbers(entries_at(factors, psi), arm.triples, plain_levers(arm))
+    side *= signs
+    amid += side
+    amid[0::2] *= ends
     q = np.empty((7, len(psi)))
-    np.subtract(turns[:, 0], arm.offsets[:3], out=q[:3])
-    np.subtract(q4, arm.offsets[3], out=q[3])
-    np.subtract(turns[:, 1], arm.offsets[4:], out=q[4:])
-    full = q / TURN
-    np.rint(full, out=full)
-    full *= TURN
-    q -= full
+    turns = np.arctan2(amid.imag, amid.real)
+    q[:3], q[4:] = turns[:, 0], turns[:, 1]
+    np.subtract(q4, arm.chain.offsets[3], out=q[3])
+    q[3] -= TURN * np.rint(q[3] / TURN)
     low = q < HALF_TURN - np.pi
     if low.any():
         q[low] += TURN  # -180° is 180°, whatever the last digits say
     return q.T
 
 
-def _turns(factors: Array, psi: Array, triples: Triples, signs: Array) -> Array:
-    """Turns (3, 2, s) of triples at ψ (s,) by the factors (3, 5, 2, s) of 1, cos ψ and sin ψ and the signs (2, s) of
-    the middle turns' sines."""
-    g = entries_at(factors, psi)
+def turning_numbers(g: Array, triples: Triples, levers: Array) -> tuple[Array, Array, Array]:
+    """Complex numbers along the turns (3, ..., 2, K) of triples, but for a factor: what the cosine and what the sine of
+    the middle turn add to them, and (2, ..., 2, K) what the first and the last are to be multiplied by.
+
+    g: (5, ..., 2, K) the entries 13, 23, 33, 31, 32 of the triples; levers: (3, 3, 2, 1) by `turning_levers`. The sine
+    is the one that is not negative; of the other sign, what it adds has the other sign.
+    """
     x = g[2] - triples.k[:, None]
     x /= triples.r[:, None]
     np.minimum(x, 1.0, out=x)
     np.maximum(x, -1.0, out=x)
-    y = 1.0 + x
-    y *= 1.0 - x
+    y = 1.0 - x
+    y *= 1.0 + x
     np.sqrt(y, out=y)
-    y *= signs
-    Y, X = np.empty((2, 3, *x.shape))
-    np.subtract(x * triples.cos_phi, y * triples.sin_phi, out=X[1])
-    np.add(y * triples.cos_phi, x * triples.sin_phi, out=Y[1])
-    still, cosines, sines = triples.levers
-    levers = cosines * X[1]
-    levers += still
-    levers += sines * Y[1]
-    G, H = g[0::3], g[1::3]
-    np.add(G * levers[0], H * levers[1], out=X[0::2])
-    up, down = H * levers[0], G * levers[1]
-    np.subtract(up[0], down[0], out=Y[0])
-    np.subtract(down[1], up[1], out=Y[2])
-    return np.asarray(np.arctan2(Y, X))
+    if x.ndim > 2:
+        levers = levers.reshape(3, 3, *[1] * (x.ndim - 2), 2, 1)
+    still, along, across = levers
+    amid = along * x
+    amid += still
+    ends = np.empty((2, *x.shape), dtype=complex)
+    ends.real, ends[0].imag = g[0::3], g[1]
+    np.negative(g[4], out=ends[1].imag)
+    return amid, across * y, ends
+
+
+def turning_levers(triples: Triples, back: Array) -> Array:
+    """The factors (3, 3, 2, 1) of 1, and of the cosine and sine of b counted from phi, in the turns of
+    `turning_numbers`, turned back by angles (3, 2) [rad], by turn and triple."""
+    first, last = np.conj(triples.u[0] + 1j * triples.u[1]), triples.v[0] + 1j * triples.v[1]
+    amid = np.broadcast_to(np.array([[0.0], [1.0], [1j]]), (3, 2))
+    c, s = triples.cos_phi, triples.sin_phi
+    levers = [[lever[0], lever[1] * c + lever[2] * s, lever[2] * c - lever[1] * s] for lever in (first, amid, last)]
+    return np.asarray((np.array(levers).swapaxes(0, 1) * np.exp(-1j * back))[..., None])
+
+
+@fact
+def plain_levers(arm: SwivelArm) -> Array:
+    """The same for the joint values of an arm."""
+    return turning_levers(arm.triples, arm.chain.offsets[TRIPLES].T)

@@ -22,13 +22,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
-from robokin.inverse.self_motion.swivel_arm import SwivelArm, Triples
-from robokin.inverse.self_motion.swivel_curves import TURN, SwivelCurves
+from robokin.inverse.self_motion.swivel_arm import SwivelArm
+from robokin.inverse.self_motion.swivel_curves import TRIPLES, TURN, SwivelCurves, turning_levers, turning_numbers
 from robokin.kernel.facts import fact
 from robokin.model.robot import LIMIT_TOLERANCE
-
-TRIPLES = np.array([[0, 1, 2], [4, 5, 6]])
-"""The joints of the shoulder and of the wrist, from 0."""
 
 TOUCHES = 1e-9
 """How far beyond 1 the cosine of half the way between two values of ψ may be for them to be one."""
@@ -115,8 +112,8 @@ class SwivelBounds:
 
     matrix: (E, 10), value: (E,) of equations in the ten entries of the triples; middle, half: (3, 1, 1, 2, 1, 1) of the
     triples' turns and (2,) of the elbow [rad], offsets included; half is infinite where limits keep no angle out;
-    stops: the same, which joints have limits a full turn apart; stopping: whether some have; levers: (3, 3, 2) complex,
-    by factor, turn and triple those of 1, cos b and sin b, b counted from phi, in what `turned_away` takes an angle of.
+    stops: the same, which joints have limits a full turn apart; stopping: whether some have; levers: those of
+    `turning_levers` for the middles.
     """
 
     def __init__(self, arm: SwivelArm, limits: Array) -> None:
@@ -131,7 +128,7 @@ class SwivelBounds:
             number[TRIPLES].T[:, None, None, :, None, None] for number in (middle, half, stops)
         )
         self.elbow = float(middle[3]), float(half[3])
-        self.arm, self.levers = arm, _levers(arm.triples, middle[TRIPLES].T)
+        self.arm, self.levers = arm, turning_levers(arm.triples, middle[TRIPLES].T)
         rows, values = [], []
         for t, joints in enumerate(TRIPLES):
             for place, joint in enumerate(joints):
@@ -142,19 +139,6 @@ class SwivelBounds:
                     rows.append(row.reshape(10))
                     values.append(value)
         self.matrix, self.value = np.array(rows).reshape(-1, 10), np.array(values)
-
-
-def _levers(triples: Triples, middle: Array) -> Array:
-    """The factors (3, 3, 2) of `turned_away` for the middles (3, 2) of the limits [rad], by turn and triple."""
-    first, last = (np.conj(lever[0] + 1j * lever[1]) for lever in (triples.u, triples.v))
-    amid = np.broadcast_to(np.array([[0.0], [1.0], [1j]]), (3, 2))
-    turns = []
-    for lever, back in zip((first, amid, last), (-middle[0], -middle[1], middle[2]), strict=True):
-        # The turn in the middle counts from phi there, in the others' levers from zero.
-        c, s = np.cos(triples.phi), np.sin(triples.phi)
-        along, across = lever[1] * c + lever[2] * s, lever[2] * c - lever[1] * s
-        turns.append(np.stack([lever[0], along, across]) * np.exp(1j * back))
-    return np.stack(turns, axis=1)
 
 
 def _meeting_limit(arm: SwivelArm, t: int, place: int, end: float) -> tuple[Array, float]:
@@ -272,24 +256,16 @@ def _margins(curves: SwivelCurves, bounds: SwivelBounds, psi: Array) -> tuple[Ar
 def turned_away(g: Array, bounds: SwivelBounds) -> Array:
     """How far (3, ..., 2, 2, K) [rad] the turns of triples are from the middle of their limits, by both signs.
 
-    g: (5, ..., 2, K) the entries 13, 23, 33, 31, 32 of the triples. As the turns of `swivel_curves`, in complex numbers
-    that are turned back by the middles, so that no full turns are left to look at.
+    g: (5, ..., 2, K) the entries 13, 23, 33, 31, 32 of the triples. The turns are turned back by the middles as complex
+    numbers, so that there are no full turns to look at.
     """
-    triples = bounds.arm.triples
-    x = (g[2] - triples.k[:, None]) / triples.r[:, None]
-    np.minimum(x, 1.0, out=x)
-    np.maximum(x, -1.0, out=x)
-    still, along, across = bounds.levers.reshape(3, 3, *[1] * (x.ndim - 2), 2, 1)
-    middle = along * x
-    middle += still
-    side = across * np.sqrt((1.0 - x) * (1.0 + x))
-    turned = np.empty((3, *x.shape[:-1], 2, x.shape[-1]), dtype=complex)
-    np.add(middle, side, out=turned[..., 0, :])
-    np.subtract(middle, side, out=turned[..., 1, :])
-    ends = np.empty((2, *x.shape), dtype=complex)
-    ends.real, ends.imag = g[0::3], g[1::3]
+    amid, side, ends = turning_numbers(g, bounds.arm.triples, bounds.levers)
+    turned = np.empty((*amid.shape[:-1], 2, amid.shape[-1]), dtype=complex)
+    np.add(amid, side, out=turned[..., 0, :])
+    np.subtract(amid, side, out=turned[..., 1, :])
     turned[0::2] *= ends[..., None, :]
-    return np.asarray(np.abs(np.arctan2(turned.imag, turned.real)))
+    away = np.arctan2(turned.imag, turned.real)
+    return np.abs(away, out=away)
 
 
 def _runs(psi: Array, begins: Index, ends: Index, all_round: Flags, points: Index) -> tuple[Index, Array, Array, Flags]:
