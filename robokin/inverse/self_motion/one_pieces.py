@@ -18,19 +18,19 @@ from typing import NamedTuple
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.inverse.self_motion.swivel_curves import entries_at
+from robokin.inverse.self_motion.swivel_curves import TURN, entries_at
 from robokin.inverse.self_motion.swivel_pieces import (
     ALIKE,
     MEETS,
     SURE,
-    TURN,
     VAGUE,
     SwivelBounds,
     meetings,
     turned_away,
 )
 
-_VAGUE = np.array([VAGUE])
+AS_VAGUE = np.array([VAGUE])
+"""`VAGUE` of one pose, whose elbow is not straight."""
 
 
 Piece = tuple[int, float, float, float]
@@ -38,8 +38,8 @@ Piece = tuple[int, float, float, float]
 
 
 class Looked(NamedTuple):
-    """A curve at its places of ψ, as bits: whether it is within the limits between each and the next, and there; where it
-    is beyond a limit by so little that it may be rounding, between and there; where a joint stops there."""
+    """A curve at its places of ψ, as bits: whether it is within the limits between each and the next, and there; where
+    it is beyond a limit by so little that it may be rounding, between and there; where a joint stops there."""
 
     within: int
     at: int
@@ -57,19 +57,19 @@ class OneBounds:
     @cached_property
     def half(self) -> Array:
         """How far each turn may be from its middle [rad]."""
-        return self.bounds.half[:, 0, 0]
+        return np.asarray(self.bounds.half[:, 0, 0])
 
     @cached_property
-    def stops(self) -> Array:
+    def stops(self) -> Flags:
         """Which joints have limits a full turn apart."""
-        return self.bounds.stops[:, 0, 0]
+        return np.asarray(self.bounds.stops[:, 0, 0])
 
     def pieces(self, q4: Sequence[float], entries: Array) -> list[Piece] | None:
         """The pieces of curves with real elbows q4 (2) [rad], not straight; None where there is doubt.
 
         entries: (2, 2, 5, 3) as `SwivelCurves` has them.
         """
-        psi, touched = meetings(entries[None], self.bounds, _VAGUE)
+        psi, touched = meetings(entries[None], self.bounds, AS_VAGUE)
         elbows: list[tuple[int, list[float]]] = []
         midway: list[float] = []
         for e, (row, touches) in enumerate(zip(psi[0].tolist(), touched[0].tolist(), strict=True)):
@@ -91,16 +91,19 @@ class OneBounds:
         for e, places in elbows:
             many = (1 << len(places)) - 1
             for pair, (sure, vague, stop) in enumerate(rows):
-                looked = Looked(*(bits >> shift & many for bits, shift in (
-                    (sure, count + start), (sure, start), (vague, count + start), (vague, start), (stop, start))))
+                between = count + start
+                shifted = sure >> between, sure >> start, vague >> between, vague >> start, stop >> start
+                looked = Looked(*(bits & many for bits in shifted))
                 if not _along(4 * e + pair, places, looked, found):
                     return None
             start += len(places)
         return found
 
-    def _looked(self, entries: Array, elbows: list[tuple[int, list[float]]], midway: list[float]) -> list[tuple[int, ...]]:
-        """For each pair of signs of shoulder and wrist, as bits of the places of the elbows one after the other, then of
-        those midway: which are within the limits, which are beyond by so little that it may be rounding, and where a
+    def _looked(
+        self, entries: Array, elbows: list[tuple[int, list[float]]], midway: list[float]
+    ) -> list[tuple[int, ...]]:
+        """For each pair of signs of shoulder and wrist, as bits of the elbows' places one after the other, then of
+        those midway: which are within the limits, which are beyond by so little that it may be rounding, where a
         joint stops."""
         elbow = np.repeat([e for e, _ in elbows] * 2, [len(places) for _, places in elbows] * 2)
         psi = np.array([*(one for _, places in elbows for one in places), *midway])
@@ -160,13 +163,13 @@ def _along(code: int, places: list[float], looked: Looked, found: list[Piece]) -
         pieces.append((code, -math.pi, math.pi, 1.0))
     if points:
         pieces.sort(key=itemgetter(1))
-    end = -math.inf
+    before_it = -math.inf
     for _, first, last, whole in pieces:
         length = last - first
         left_out = TURN - length
-        if 0.0 < length < VAGUE or (not whole and ALIKE < left_out < VAGUE) or 0.0 != first - end < VAGUE:
+        if 0.0 < length < VAGUE or (not whole and ALIKE < left_out < VAGUE) or 0.0 != first - before_it < VAGUE:
             return False
-        end = last
+        before_it = last
     found += pieces
     return True
 

@@ -1,16 +1,19 @@
 """One pose of an arm with a spherical shoulder and wrist, without blocks: what `native/swivel.c` gives, in Python.
 
 Statement. Give the pieces of a pose's self-motions within the joint limits and the solutions that are listed of them.
-Derivation. The steps are those of a block (`swivel_pieces`, `swivel_members`, `spread`) for a table of one pose; the
-configurations are proven by forward kinematics, here by products with the chain's constants, joint after joint: of some
-tens of them numpy's share of a call is more than the work.
+Derivation. The steps are those of a block (`swivel_pieces`, `swivel_members`, `spread`): the curves by straight-line
+code (`swivel_code`), the pieces by bits (`one_pieces`), the rest for a table of one pose. The configurations are proven
+by forward kinematics, here by products with the chain's constants, joint after joint: of some tens of them numpy's
+share of a call is more than the work.
 Degenerate case. Where a step doubts, or nothing is within the limits, nothing is given.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import count
 
 import numpy as np
 
@@ -46,6 +49,9 @@ ALL_BUT_THE_ELBOW = 127 - 8
 
 BITS = 1 << np.arange(7)
 
+FROM_Z = [2, 3, 0, 1]
+"""Columns z, p, x, y of a frame's x, y, z, p."""
+
 Answer = tuple[Array, Array, list[int], int, int]
 """Rows of solutions (k, 10): joint values, position, angle, curve; pieces (p, 4): curve, first and last ψ, whole; by
 curve the joints, as bits, that move along it; how many close, and how many are within the limits."""
@@ -66,9 +72,14 @@ class OneSwivel:
         """The limits as equations."""
         return OneBounds(swivel_bounds(self.arm, self.limits))
 
+    @cached_property
+    def _poses(self) -> Iterator[int]:
+        """Which pose of the arm it is: code is made at the second one, since it takes as long as twenty poses."""
+        return count()
+
     def solution(self, T: Array, most: int) -> Answer | None:
         """The answer for a target T (4, 4) [m], up to `most` solutions; None where the blocks are to look at it."""
-        known = one_curves(self.arm)(*T.ravel().tolist())
+        known = one_curves(self.arm)(*T.ravel().tolist()) if next(self._poses) else None
         if known is None:
             curves = swivel_curves(self.arm, T[None])
             pieces = None if curves.doubt[0] else swivel_pieces(curves, self.limits)
@@ -148,11 +159,11 @@ def _moved(q: Array, count: int) -> list[int]:
 
 @fact
 def _steps(chain: Chain) -> tuple[Array, list[Array]]:
-    """The first constant's columns (4, 3, 1), and of each joint, which turns, and the constant after it the factors
-    (4, 6) of cos q x, cos q y, sin q x, sin q y, z, p."""
+    """The first constant's columns z, p, x, y (4, 3, 1), and of each joint, which turns, and the constant after it the
+    factors (4, 6) of cos q x, cos q y, sin q x, sin q y, z, p in these."""
     first, *rest = chain.constants
-    factors = [np.stack([C[0], C[1], -C[1], C[0], C[2], C[3]], axis=1) for C in rest]
-    return first[:3].T[:, :, None].copy(), factors
+    factors = [np.stack([C[0], C[1], -C[1], C[0], C[2], C[3]], axis=1)[FROM_Z] for C in rest]
+    return first[:3].T[FROM_Z, :, None].copy(), factors
 
 
 def _missing(chain: Chain, q: Array, T: Array) -> tuple[Array, Array]:
@@ -161,18 +172,21 @@ def _missing(chain: Chain, q: Array, T: Array) -> tuple[Array, Array]:
     As `verify.residuals` has it.
     """
     first, factors = _steps(chain)
-    turns = q.T + chain.offsets[:, None]
-    cosines, sines = np.cos(turns), np.sin(turns)
-    parts, frame = np.empty((6, 3, len(q))), np.empty((4, 3, len(q)))
-    frame[:] = first
-    flat, out = parts.reshape(6, -1), frame.reshape(4, -1)
-    for c, s, factor in zip(cosines, sines, factors, strict=True):
-        np.multiply(frame[:2], c, out=parts[:2])
-        np.multiply(frame[:2], s, out=parts[2:4])
-        parts[4:] = frame[2:]
-        np.matmul(factor, flat, out=out)
-    frame -= T[:3].T[:, :, None]
-    frame *= frame
-    squares = np.add.reduce(frame, axis=1)
-    chord = np.sqrt(squares[0] + squares[1] + squares[2])
-    return np.sqrt(squares[3]), 2.0 * np.arcsin(np.minimum(chord / np.sqrt(8.0), 1.0))
+    # Of each joint in turn the products with cosine and sine, then the columns z, p, x, y before it; one table is read
+    # while the other is filled.
+    one, other = np.empty((2, 8, 3, len(q)))
+    one[4:] = first
+    turns = np.empty((7, 2, 1, 1, len(q)))
+    angles = q.T + chain.offsets[:, None]
+    np.cos(angles, out=turns[:, 0, 0, 0])
+    np.sin(angles, out=turns[:, 1, 0, 0])
+    for turn, factor in zip(turns, factors, strict=True):
+        np.multiply(one[6:], turn, out=one[:4].reshape(2, 2, 3, -1))
+        np.matmul(factor, one[:6].reshape(6, -1), out=other[4:].reshape(4, -1))
+        one, other = other, one
+    off = one[4:]
+    off -= T[:3].T[FROM_Z, :, None]
+    off *= off
+    squares = np.add.reduce(off, axis=1)
+    chord = np.sqrt(squares[2] + squares[3] + squares[0])
+    return np.sqrt(squares[1]), 2.0 * np.arcsin(np.minimum(chord / np.sqrt(8.0), 1.0))

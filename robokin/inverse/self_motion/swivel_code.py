@@ -117,7 +117,11 @@ def one_curves(arm: SwivelArm) -> Callable[..., OneCurves | None]:
     entries = asked[len(flags) :]
     body = [f"def straight({', '.join(f't{k}' for k in range(12))}, *bottom):", *needed(lines, asked, "    ")]
     body += [f"    if {' or '.join(left)}:", "        return None", f"    found = empty({len(entries)})"]
-    body += [f"    fill(found, 0, {', '.join(entries)})", "    found += 0.0", f"    return {doubt}, ({first}, {second}), {is_real}, found"]
+    body += [
+        f"    fill(found, 0, {', '.join(entries)})",
+        "    found += 0.0",
+        f"    return {doubt}, ({first}, {second}), {is_real}, found",
+    ]
     names = {"empty": np.empty, "fill": Struct(f"{len(entries)}d").pack_into}
     curves: Callable[..., OneCurves | None] = made(body, arccos=np.arccos, cos=np.cos, sin=np.sin, **names)
     return curves

@@ -265,7 +265,7 @@ def turned_away(g: Array, bounds: SwivelBounds) -> Array:
     np.subtract(amid, side, out=turned[..., 1, :])
     turned[0::2] *= ends[..., None, :]
     away = np.arctan2(turned.imag, turned.real)
-    return np.abs(away, out=away)
+    return np.asarray(np.abs(away, out=away))
 
 
 def _runs(psi: Array, begins: Index, ends: Index, all_round: Flags, points: Index) -> tuple[Index, Array, Array, Flags]:
