@@ -10,9 +10,10 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.inverse.self_motion.swivel_arm import SwivelArm
-from robokin.inverse.self_motion.swivel_curves import TRIPLES, plain_arm
+from robokin.inverse.self_motion.swivel_curves import plain_arm
 from robokin.inverse.self_motion.swivel_members import COUNTS
 from robokin.inverse.self_motion.swivel_pieces import SwivelBounds
+from robokin.inverse.self_motion.swivel_turns import TRIPLES
 from robokin.kernel.native_kernel import handle, native
 from robokin.model.robot import tolerated
 

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from robokin.arrays import Array, Flags
-from robokin.inverse.self_motion.swivel_curves import TURN, entries_at
+from robokin.inverse.self_motion.swivel_curves import TURN
 from robokin.inverse.self_motion.swivel_pieces import (
     ALIKE,
     MEETS,
@@ -28,6 +28,7 @@ from robokin.inverse.self_motion.swivel_pieces import (
     meetings,
     turned_away,
 )
+from robokin.inverse.self_motion.swivel_turns import entries_at
 
 AS_VAGUE = np.array([VAGUE])
 """`VAGUE` of one pose, whose elbow is not straight."""

@@ -22,9 +22,10 @@ from robokin.inverse.self_motion.one_pieces import OneBounds
 from robokin.inverse.self_motion.spread import spread_of_one
 from robokin.inverse.self_motion.swivel_arm import SwivelArm
 from robokin.inverse.self_motion.swivel_code import one_curves
-from robokin.inverse.self_motion.swivel_curves import SIGNS, TURN, SwivelCurves, joint_values, swivel_curves
+from robokin.inverse.self_motion.swivel_curves import SIGNS, TURN, SwivelCurves, swivel_curves
 from robokin.inverse.self_motion.swivel_members import COUNTS, placed
 from robokin.inverse.self_motion.swivel_pieces import CODES, CURVES, SwivelPieces, swivel_bounds, swivel_pieces
+from robokin.inverse.self_motion.swivel_turns import joint_values
 from robokin.inverse.verify import CLOSES, within_limits
 from robokin.kernel.chain import Chain
 from robokin.kernel.facts import fact

@@ -23,7 +23,8 @@ import numpy as np
 
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.swivel_arm import SwivelArm
-from robokin.inverse.self_motion.swivel_curves import TRIPLES, TURN, SwivelCurves, turning_levers, turning_numbers
+from robokin.inverse.self_motion.swivel_curves import TURN, SwivelCurves
+from robokin.inverse.self_motion.swivel_turns import TRIPLES, turning_levers, turning_numbers
 from robokin.kernel.facts import fact
 from robokin.model.robot import LIMIT_TOLERANCE
 
