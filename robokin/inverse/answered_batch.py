@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from robokin.arrays import Array, Index
-from robokin.inverse.batch_tables import NativeAnswers, NativeKind, empty_tables
+from robokin.inverse.batch_tables import NativeAnswers, NativeKind, empty_tables, with_held_values
 from robokin.inverse.plain_targets import PlainBlock, kernel_form, plain_kind
 from robokin.inverse.single_answer import known_reason, result_of, why_not
 from robokin.inverse.solutions import BatchResult, Result
@@ -42,7 +42,10 @@ class _Share:
 
 
 def answered_batch(request: Request, T: Array, cores: int | None) -> BatchResult:
-    """The answers for targets T (m, 4, 4) [m], on some cores, all usable ones for None."""
+    """The answers for targets T (m, 4, 4) [m], on some cores, all usable ones for None.
+
+    Where the native kernel has part in them held joints (`Request.pattern`) are among their joint values.
+    """
     kind = _native_kind(request)
     known = None if kind is None else NativeAnswers(kind, T, BLOCK, cores)
     left = None if known is None else np.flatnonzero(~known.plain)
@@ -79,10 +82,12 @@ def _batch(request: Request, m: int, known: NativeAnswers | None, parts: list[_S
     for part in parts:
         counts[part.targets] = part.block.count
     most = int(counts.max(initial=0))
+    held = None if known is None else known.kind.pattern
     q, position, angle, inside = empty_tables(m, most, request.robot.n)[-4:] if known is None else known.listed(most)
     for part in parts:
         at = part.targets
-        q[at], position[at], angle[at], inside[at] = part.block.padded(most)
+        values, position[at], angle[at], inside[at] = part.block.padded(most)
+        q[at] = values if held is None else with_held_values(values, held)
 
     def place(i: int) -> tuple[TargetBlock, int]:
         found = None if known is None else known.place(i)

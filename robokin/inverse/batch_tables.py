@@ -59,13 +59,25 @@ def empty_tables(m: int, rows: int, n: int) -> BatchTables:
     return BatchTables(plain, tried, closing, within, listed, q, position, angle, inside)
 
 
+def with_held_values(q: Array, pattern: Array) -> Array:
+    """Joint values (..., k) with those of held joints between them, (..., n); NaN where these are (padded rows).
+
+    pattern: (n,) the values of the joints that are held, NaN for the k others.
+    """
+    out, held = np.empty((*q.shape[:-1], len(pattern))), ~np.isnan(pattern)
+    out[..., ~held] = q
+    out[..., held] = np.where(np.isnan(q[..., :1]), np.nan, pattern[held])
+    return out
+
+
 @dataclass(frozen=True, eq=False)
 class NativeKind:
     """How the native kernel answers a request.
 
     rows: of a target; n: its joints; share: targets that a thread takes at once; fill: puts the answers for targets
     (k, 4, 4) into tables; block: makes the answers for targets of which all are answered from their tables; proven:
-    whether lists are complete that are not cut; quick: whether an answer takes less time than to keep it.
+    whether lists are complete that are not cut; quick: whether an answer takes less time than to keep it; pattern: (n,)
+    of joints that are held in these tables their values, NaN for the others, or None.
     """
 
     rows: int
@@ -75,6 +87,7 @@ class NativeKind:
     block: Callable[[Array, BatchTables], TargetBlock]
     proven: bool
     quick: bool
+    pattern: Array | None = None
 
     def filled(self, T: Array, cores: int | None) -> BatchTables:
         """The tables for targets T (m, 4, 4) [m]."""

@@ -42,6 +42,9 @@ KEPT = 16
 """Arms with joints held that are kept for one robot: enough for a few values in turn; a sweep over many values must
 not fill the memory."""
 
+PLAIN = (float, int, np.float64)
+"""Types of values that are taken as they are."""
+
 SHARE = 16_000
 """Targets whose solutions a thread puts together at once."""
 
@@ -74,7 +77,7 @@ class HeldArm:
             tell(one_target_arm, self._known, part)
         return part
 
-    @property
+    @cached_property
     def one(self) -> OneTargetArm | None:
         """What answers one pose for the part; None where blocks do."""
         return one_target_arm(self.part) if self._known is None else self._known
@@ -145,6 +148,20 @@ def held_arm(robot: Robot, hold: Mapping[int, float]) -> HeldArm:
     return arm
 
 
+def arm_held_before(robot: Robot, hold: dict[int, float]) -> HeldArm | None:
+    """The arm of joints and values that were held before, as `held_arm` has it; None where that has to look at them."""
+    for joint, value in hold.items():
+        if type(joint) is not int or type(value) not in PLAIN:
+            return None  # what equals a number may be none
+    kept, asked = _held_arms(robot), tuple(hold.items())
+    try:
+        arm = kept[asked]
+        kept.move_to_end(asked)
+    except KeyError:
+        return None
+    return arm
+
+
 @fact
 def _held_arms(robot: Robot) -> OrderedDict[tuple[tuple[int, float], ...], HeldArm]:
     """The arms that were last asked for, none at first, by the joints and their values."""
@@ -195,20 +212,21 @@ def held_inside(robot: Robot, joint: int, value: float) -> bool:
 def with_held_joints(robot: Robot, arm: HeldArm, batch: BatchResult, cores: int | None = 1) -> BatchResult:
     """The answers of the part as answers of the robot: the held values put in, joints by the robot's numbers.
 
+    The kernel has put them in already where it made the table.
     The solutions are some of all that the robot has at the pose. Where these are finitely many, the robot's names tell
     them apart; a redundant robot's do not, and the postures are named as the part's.
     """
     motion = robot.free_motion if isinstance(robot, CoupledRobot) else robot
     renamed = not (isinstance(robot, CoupledRobot) and not robot.drive.invertible)
     renamed = renamed and analysis_of(motion).redundancy == 0
-    listed = np.arange(batch.q.shape[1]) < batch.count[:, None]
-    q = arm.whole_batch(batch.q, cores)
+    count = batch.count.copy()
+    q = batch.q if batch.q.shape[2] == arm.n else arm.whole_batch(batch.q, cores)
 
     def single(i: int) -> Result:
         return _whole_result(arm, batch[i], robot if renamed else None)
 
     def branches() -> list[str]:
-        return _names(robot, q[listed]) if renamed else batch.branches()
+        return _names(robot, q[np.arange(q.shape[1]) < count[:, None]]) if renamed else batch.branches()
 
     return replace(batch, q=q, within_limits=batch.within_limits & arm.inside, single=single, branches=branches)
 

@@ -60,18 +60,20 @@ def plain_kind(request: Request) -> NativeKind:
     arm = one_target_arm(request.robot)
     assert arm is not None
     rows = native.roots(arm.kernel, arm.elimination)
-    fill, block = partial(_fill, request), partial(PlainBlock, request)
+    pattern = request.pattern if request.pattern is None or len(request.pattern) <= native.most_joints else None
+    fill, block = partial(_fill, request, pattern), partial(PlainBlock, request, pattern)
     quick = arm.elimination is None
-    return NativeKind(rows, 6, QUICK_SHARE if quick else SLOW_SHARE, fill, block, proven=True, quick=quick)
+    share, n = QUICK_SHARE if quick else SLOW_SHARE, 6 if pattern is None else len(pattern)
+    return NativeKind(rows, n, share, fill, block, proven=True, quick=quick, pattern=pattern)
 
 
-def _fill(request: Request, T: Array, tables: BatchTables) -> None:
+def _fill(request: Request, pattern: Array | None, T: Array, tables: BatchTables) -> None:
     """Put what is plain of targets T (m, 4, 4) [m] into their tables."""
     assert native is not None
     arm = one_target_arm(request.robot)
     assert arm is not None
     near = None if request.near is None else np.ascontiguousarray(request.near)
-    native.solutions(arm.kernel, T, request.limits, near, arm.elimination, request.most, tables)
+    native.solutions(arm.kernel, T, request.limits, near, arm.elimination, request.most, tables, pattern)
 
 
 class PlainBlock(TargetBlock):
@@ -80,8 +82,13 @@ class PlainBlock(TargetBlock):
     tables: what is listed of each target, in rows of joint values, distances, angles, and which are within the limits.
     """
 
-    def __init__(self, request: Request, T: Array, tables: BatchTables) -> None:
-        """The answers for targets T (m, 4, 4) [m], which all are plain."""
+    def __init__(self, request: Request, pattern: Array | None, T: Array, tables: BatchTables) -> None:
+        """The answers for targets T (m, 4, 4) [m], which all are plain.
+
+        pattern: of joints that are held in the tables their values, NaN for the others, or None.
+        """
+        if pattern is not None:
+            tables = tables._replace(q=tables.q[..., np.isnan(pattern)])
         self.request, self.T, self.tables = request, T, tables
         self.closing, self.within, self.count = tables.closing, tables.within, tables.listed
         self._nearest, self._arcs, self.swivel, self._proven = {}, {}, None, dict[int, tuple[TargetBlock, int]]()
@@ -109,7 +116,7 @@ class PlainBlock(TargetBlock):
     @cached_property
     def every(self) -> tuple[Array, Index]:  # type: ignore[override]
         """All solutions, within the limits or not, and their targets."""
-        every = replace(self.request, limits=False, most=None)
+        every = replace(self.request, limits=False, most=None, pattern=None)
         _, _, count, _, _, q, *_ = plain_kind(every).filled(self.T, 1)
         return q[np.arange(q.shape[1]) < count[:, None]], np.repeat(np.arange(len(count)), count)
 

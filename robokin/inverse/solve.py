@@ -17,7 +17,15 @@ from robokin.inverse.analysis import Task, analysis_of
 from robokin.inverse.answered_batch import answered_batch
 from robokin.inverse.coupled_joints import solve_coupled
 from robokin.inverse.full_turns import check_turns, with_full_turns, with_turn_counts
-from robokin.inverse.hold import HeldArm, check_held_limits, held_arm, own_near, whole_answer, with_held_joints
+from robokin.inverse.hold import (
+    HeldArm,
+    arm_held_before,
+    check_held_limits,
+    held_arm,
+    own_near,
+    whole_answer,
+    with_held_joints,
+)
 from robokin.inverse.later_fields import changed
 from robokin.inverse.one_answer import OneAnswer
 from robokin.inverse.one_target import KernelSolution, kernel_answer, plain_pose, solve_one
@@ -109,21 +117,22 @@ def _one_target(
         return None
     if type(seed) is not int or seed < 0 or not (most is None or (type(most) is int and most >= 1)):
         return None
+    part = arm = None
     if near is None and hold is None:
-        # The kernel looks at the pose itself.
         arm = one_target_arm(robot)
-        if native is not None and arm is not None and arm.kernel is not None:
-            told = native.solution(arm.kernel, T, limits, None, arm.elimination)
-            # What the answer is made of is put together when it is looked at.
-            return None if told is None else UnmadeResult(partial(_told, robot, arm, told, limits, most, method, seed))
-        if arm is not None and plain_pose(T):
-            answer = solve_one(arm, T, limits, most)
-            return None if answer is None else UnmadeResult(partial(_made, robot, None, answer, {}, method, seed))
-        swivel = one_swivel_arm(robot) if arm is None and limits else None
-        if swivel is not None and plain_pose(T):
-            known = solve_swivel(swivel, T, most)
-            return None if known is None else UnmadeResult(partial(_made_of_motions, known, method, most, seed))
-        return None
+    elif near is None and type(hold) is dict and type(robot) is Robot:
+        part = arm_held_before(robot, hold)
+        arm = part.one if part is not None and (part.inside or not limits) else None
+    if near is None and native is not None and arm is not None and arm.kernel is not None:
+        # The kernel looks at the pose itself, and what the answer is made of is put together when it is looked at.
+        told = native.solution(arm.kernel, T, limits, None, arm.elimination)
+        if told is None:
+            return None
+        return UnmadeResult(
+            partial(_told, robot, part, arm, told, limits, most, hold and (*hold.items(),), method, seed)
+        )
+    if near is None and hold is None:
+        return _without_kernel(robot, arm, T, limits, most, method, seed)
     if not plain_pose(T) or isinstance(robot, CoupledRobot) or not (hold is None or isinstance(hold, Mapping)):
         return None
     wish = near = _wished(robot, near)
@@ -140,11 +149,34 @@ def _one_target(
     return UnmadeResult(partial(_made, robot, part, answer, dict(hold or {}), method, seed, near))
 
 
+def _without_kernel(
+    robot: Robot, arm: OneTargetArm | None, T: ArrayLike, limits: bool, most: int | None, method: Method, seed: int
+) -> Result | None:
+    """The same where the native kernel has no closed form: by Python's code, or by intervals of the swivel angle."""
+    if not plain_pose(T):
+        return None
+    assert isinstance(T, np.ndarray)
+    if arm is not None:
+        answer = solve_one(arm, T, limits, most)
+        return None if answer is None else UnmadeResult(partial(_made, robot, None, answer, {}, method, seed))
+    swivel = one_swivel_arm(robot) if limits else None
+    known = None if swivel is None else solve_swivel(swivel, T, most)
+    return None if known is None else UnmadeResult(partial(_made_of_motions, known, method, most, seed))
+
+
 def _told(
-    robot: Robot, arm: OneTargetArm, told: KernelSolution, limits: bool, most: int | None, method: Method, seed: int
+    robot: Robot,
+    part: HeldArm | None,
+    arm: OneTargetArm,
+    told: KernelSolution,
+    limits: bool,
+    most: int | None,
+    hold: tuple[tuple[int, float], ...] | None,
+    method: Method,
+    seed: int,
 ) -> dict[str, Any]:
     """The fields of the native kernel's answer, when it is looked at."""
-    return _made(robot, None, kernel_answer(arm, told, limits, most, None), {}, method, seed)
+    return _made(robot, part, kernel_answer(arm, told, limits, most, None), dict(hold or ()), method, seed)
 
 
 def _made(
@@ -209,11 +241,12 @@ def solve_many(
     motions: bool = False,
     cores: int | None = 1,
     checked: bool = False,
+    pattern: Array | None = None,
 ) -> BatchResult:
     """`solve_ik` for poses T: (m, 4, 4), whatever their number; `checked` are as `target_poses` gives them.
 
     With `motions` the self-motions of arms with one joint to spare are followed too, as `solve_ik` does for one pose:
-    that takes a tenth of a second each. Those of singular poses always are.
+    that takes a tenth of a second each. Those of singular poses always are. `pattern` (see `Request`) is not for turns.
     """
     robot = expect_robot(robot)
     near = _wished(robot, near)
@@ -238,17 +271,18 @@ def solve_many(
         if limits:
             check_held_limits(robot, arm)
         own = own_near(arm, near)
-        batch = solve_many(arm.part, T, limits, own, method, task, most, seed, turns, None, motions, cores, checked)
+        asked = limits, own, method, task, most, seed, turns, None, motions, cores, checked
+        batch = solve_many(arm.part, T, *asked, pattern=None if turns else arm.pattern)
         return with_held_joints(robot, arm, batch, cores)
     if turns:
         check_turns(robot, limits)
     poses = _checked(T, checked)
-    request = asked = replace(_request(robot, limits, near, method, task, most, seed), motions=motions)
-    if turns and not (asked.analysis.redundancy or asked.analysis.solver is None):
-        request = replace(asked, most=None)  # what is cut is the list with the full turns in it
+    request = replace(_request(robot, limits, near, method, task, most, seed), motions=motions, pattern=pattern)
+    if turns and not (request.analysis.redundancy or request.analysis.solver is None):
+        request = replace(request, most=None)  # what is cut is the list with the full turns in it
     batch = answered_batch(request, poses, cores)
     if turns:
-        return with_full_turns(robot, batch, poses, task, asked.near, asked.analysis.size, most)
+        return with_full_turns(robot, batch, poses, task, near, request.analysis.size, most)
     return with_turn_counts(robot, batch) if limits else batch
 
 

@@ -53,7 +53,7 @@ OUTSIDE = "outside the joint limits"
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """What is asked for, checked."""
+    """What is asked for, checked; pattern: (n,) values of held joints [rad | m], NaN for its own, for the kernel."""
 
     robot: Robot
     analysis: Analysis
@@ -63,6 +63,7 @@ class Request:
     most: int | None
     seed: int
     motions: bool = False
+    pattern: Array | None = None
 
     @cached_property
     def own_limits(self) -> Array:

@@ -95,10 +95,12 @@ def solutions(
     elimination: object | None = ...,
     most: int | None = ...,
     tables: tuple[Flags, Index, Index, Index, Index, Array, Array, Array, Flags] = ...,
+    pattern: Array | None = ...,
     /,
 ) -> tuple[Flags, Index, Index, Array, Array, Array, Flags] | None:
-    """Fill a batch's tables (`robokin.inverse.batch_tables`) for targets; without the last three new ones are handed
-    over, but for how many candidates and solutions within the limits there were.
+    """Fill a batch's tables (`robokin.inverse.batch_tables`) for targets, where joints are held with the values of
+    `pattern` (n,), which are no numbers elsewhere; without the last four new tables are handed over, but for how many
+    candidates and solutions within the limits there were.
     """
 
 def roots(form: object, elimination: object | None, /) -> int:

@@ -11,7 +11,7 @@ TYPE_CHECKING = False  # `typing` has the same, and takes a while to load
 if TYPE_CHECKING:
     from types import ModuleType
 
-INTERFACE = 9
+INTERFACE = 10
 """What the C code offers; one of another version, as an old build leaves it in the sources, is not used."""
 
 

@@ -68,6 +68,8 @@ def content(batch):
         ("crx10ia", {}),
         ("crx10ia", {"near": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6], "most": 3, "limits": False}),
         ("panda", {"hold": {2: 0.3}}),
+        ("panda", {"hold": {4: 0.3}, "near": [0.1, 0.2, 0.3, -1.4, 0.5, 1.6, 0.7], "most": 2}),
+        ("iiwa14", {"hold": {0: 3.0}, "limits": False}),
         ("iiwa14", {"hold": {2: 0.3}, "turns": True}),
         ("iiwa14", {}),
     ],
@@ -78,6 +80,44 @@ def test_any_number_of_cores_gives_the_same_bytes(name, asked, small_shares, rng
     one = content(robokin.solve_ik(robot, T, cores=1, **asked))
     for cores in (2, 3, 8, None):
         assert content(robokin.solve_ik(robot, T, cores=cores, **asked)) == one
+
+
+@pytest.mark.parametrize("asked", [{}, {"most": 2}, {"limits": False}, {"near": np.full(7, 0.4)}], ids=str)
+@pytest.mark.parametrize(("name", "joint"), [("panda", 2), ("panda", 6), ("iiwa14", 0)])
+def test_held_values_stand_between_those_of_the_part(name, joint, asked, small_shares, rng):
+    robot, T = targets(name, 36, rng, {joint: 0.3})
+    whole = robokin.solve_ik(robot, T, hold={joint: 0.3}, cores=2, **asked)
+    arm = hold.held_arm(robot, {joint: 0.3})
+    own = {**asked, "near": arm.own(asked["near"])} if "near" in asked else asked
+    part = robokin.solve_ik(arm.part, T, **own)
+    assert np.array_equal(whole.q, arm.whole(part.q), equal_nan=True)
+    for field in FIELDS[1:]:
+        assert np.array_equal(getattr(whole, field), getattr(part, field), equal_nan=field.endswith("error"))
+
+
+@needs_kernel
+def test_held_values_that_do_not_fit_are_refused(rng):
+    robot, T = targets("puma560", 3, rng)
+    arm = one_target_arm(robot)
+    rows = native.roots(arm.kernel, None)
+    held = np.array([np.nan, 0.5, *[np.nan] * 5])
+    asked = (arm.kernel, T, True, None, None, None)
+    native.solutions(*asked, empty_tables(3, rows, 7), held)
+    for pattern in (
+        held[:6],
+        np.append(held, np.nan),
+        np.zeros(7),
+        held[None],
+        np.full(40, np.nan),
+        held[:0],
+        "x",
+        0.5,
+    ):
+        with pytest.raises((TypeError, ValueError)):
+            native.solutions(*asked, empty_tables(3, rows, 7), pattern)
+    for n, pattern in ((6, held), (8, held), (7, None)):
+        with pytest.raises(ValueError, match="tables"):
+            native.solutions(*asked, empty_tables(3, rows, n), pattern)
 
 
 @needs_kernel
@@ -195,7 +235,7 @@ def test_tables_that_do_not_fit_are_refused(rng):
     rows = native.roots(arm.kernel, arm.elimination)
     good = empty_tables(3, rows, 6)
     asked = (arm.kernel, T, True, None, arm.elimination, None)
-    native.solutions(*asked, good)
+    native.solutions(*asked, good, None)
     read_only = empty_tables(3, rows, 6)
     read_only.q.flags.writeable = False
     other_types = (good[0], *(table.astype(np.int32) for table in good[1:5]), *good[5:])
@@ -203,18 +243,18 @@ def test_tables_that_do_not_fit_are_refused(rng):
     wrong = [empty_tables(2, rows, 6), empty_tables(3, rows + 1, 6), empty_tables(3, rows, 5), read_only]
     for tables in (*wrong, other_types, every_other, list(good), good[:8], (), None, (None,) * 9):
         with pytest.raises(ValueError, match="tables"):
-            native.solutions(*asked, tables)
+            native.solutions(*asked, tables, None)
     for most in (-1, 1.5, "2"):
         with pytest.raises((TypeError, ValueError, OverflowError)):
-            native.solutions(*asked[:5], most, good)
+            native.solutions(*asked[:5], most, good, None)
     for elimination in (arm.kernel, 3, "x"):
         with pytest.raises((TypeError, ValueError)):
-            native.solutions(*asked[:4], elimination, None, good)
+            native.solutions(*asked[:4], elimination, None, good, None)
         with pytest.raises((TypeError, ValueError)):
             native.roots(arm.kernel, elimination)
     for count in (0, 1, 3):
         with pytest.raises(TypeError):
             native.roots(*[arm.kernel] * count)
-    native.solutions(*asked[:5], 0, good)
+    native.solutions(*asked[:5], 0, good, None)
     assert not good.listed.any()
     assert np.isnan(good.q).all()

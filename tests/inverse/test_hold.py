@@ -162,6 +162,31 @@ def test_what_cannot_be_held(hold, words):
         robokin.solve_ik(robot, T, limits=False, hold=hold)
 
 
+@pytest.mark.parametrize("slip", [{True: 0.3}, {1.0: 0.3}, {np.float64(1.0): 0.3}, {1: 0.3 + 0j}], ids=str)
+def test_what_equals_a_joint_that_was_held_is_looked_at(slip):
+    robot = robokin.load("iiwa14")
+    T = robokin.forward_kinematics(robot, np.full(7, 0.3))
+    for _ in range(3):
+        assert robokin.solve_ik(robot, T, hold={1: 0.3}).solutions
+    with pytest.raises(InputError, match="hold"):
+        robokin.solve_ik(robot, T, hold=slip)
+
+
+@pytest.mark.parametrize("joint", [2, 6])
+def test_an_answer_is_that_of_what_was_held_when_it_was_asked(joint):
+    robot = robokin.load("panda")
+    T = robokin.forward_kinematics(robot, [0.3, 0.3, 0.3, -1.5, 0.3, 1.5, 0.3])
+    known = robokin.solve_ik(robot, T, hold={joint: 0.3}, near=np.zeros(7))  # not the way of plain calls
+    for value in (0.3, np.float64(0.3), 0.3):
+        asked, pose = {joint: value}, T.copy()
+        answer = robokin.solve_ik(robot, pose, hold=asked)
+        asked[joint], pose[:] = 0.9, 0.0
+        assert answer.question.hold == {joint: 0.3}
+        assert np.array_equal(answer.question.T, T)
+        assert {tuple(one.q) for one in answer} == {tuple(one.q) for one in known}
+        assert all(one.q[joint] == 0.3 for one in answer)
+
+
 def test_near_is_checked_against_the_whole_robot():
     robot = robokin.load("panda")
     T = robokin.forward_kinematics(robot, np.full(7, 0.3))

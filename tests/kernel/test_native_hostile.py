@@ -53,6 +53,8 @@ def asked(rng):
         for limits in (False, True):
             assert robokin.solve_ik(robot, T[0], limits=limits).solutions is not None
             robokin.solve_ik(robot, T, limits=limits)
+            if robot.n == 7:
+                robokin.solve_ik(robot, T, limits=limits, hold={2: 0.3})
         branch_names(robot, q)
         # Who asks for one pose has taken these functions when it was imported.
         native.pose_at_once(robot, q)

@@ -438,6 +438,42 @@ static void by_elimination(const Elimination *general, const Form *form, const d
     }
 }
 
+/* The answers for targets T (m, 4, 4) by elimination, if that is not NULL, else by a closed form. */
+static void answered(const Form *form, const Elimination *general, const double *T, npy_intp m, Wanted *wanted,
+                     npy_intp most, npy_intp rows, const Tables *to) {
+    if (general)
+        by_elimination(general, form, T, m, wanted, most, rows, to);
+    else
+        by_closed_form(form, T, m, wanted, most, rows, to);
+}
+
+/* What is held of an arm of `whole` joints: their values, no numbers for the six others. */
+typedef struct {
+    double value[MOST_JOINTS];
+    npy_intp whole;
+} Held;
+
+/* Targets whose joint values stay in the nearest memory before they are put between those that are held. */
+#define TOGETHER 16
+
+/* The same in tables of an arm of which joints are held. */
+static void answered_held(const Form *form, const Elimination *general, const double *T, npy_intp m, Wanted *wanted,
+                          npy_intp most, npy_intp rows, const Held *held, const Tables *to) {
+    double q[TOGETHER * MOST_CANDIDATES * SIX], *row = to->q;
+    for (npy_intp first = 0; first < m; first += TOGETHER) {
+        npy_intp some = m - first < TOGETHER ? m - first : TOGETHER, at = first * rows;
+        const Tables part = {to->plain + first,  to->inside + at,     to->tried + first,
+                             to->closing + first, to->within + first, to->listed + first,
+                             q,                   to->position + at,  to->angle + at};
+        answered(form, general, T + 16 * first, some, wanted, most, rows, &part);
+        const double *from = q;
+        for (npy_intp i = 0; i < some; i++)
+            for (npy_intp k = 0; k < rows; k++)
+                for (npy_intp j = 0; j < held->whole; j++)
+                    *row++ = isnan(held->value[j]) ? *from++ : k < part.listed[i] ? held->value[j] : NAN;
+    }
+}
+
 /* `most` of a call: how many solutions of a target are listed, all for None; -1 and an error for what is no number. */
 static npy_intp listed_at_most(PyObject *number) {
     if (number == Py_None)
@@ -448,38 +484,67 @@ static npy_intp listed_at_most(PyObject *number) {
     return PyErr_Occurred() ? -1 : most;
 }
 
-/* solutions(form, T, limits, wish, elimination, most, tables): fill tables (see module.h) for targets T (m, 4, 4), rigid
-   ones, by a closed form or by elimination, if that is not None. Of a form alone (form, T, limits, wish) new tables are
-   made and handed over, but for those of candidates and of what counts for the limits. */
+/* `pattern` of a call, copied: None where nothing is held; 0 and an error for what is no pattern. */
+static int held_by(PyObject *pattern, Held *held) {
+    PyObject *copy = NULL;
+    npy_intp left = 0;
+    held->whole = SIX;
+    for (int i = 0; i < SIX; i++)
+        held->value[i] = NAN;
+    if (pattern == Py_None)
+        return 1;
+    PyArrayObject *given = doubles(pattern, 1, &copy);
+    if (!given)
+        return 0;
+    int fits = PyArray_NDIM(given) == 1 && PyArray_SIZE(given) <= MOST_JOINTS;
+    if (fits) {
+        held->whole = PyArray_SIZE(given);
+        memcpy(held->value, PyArray_DATA(given), (size_t)held->whole * sizeof(double));
+        for (npy_intp i = 0; i < held->whole; i++)
+            left += isnan(held->value[i]);
+        fits = left == SIX;
+    }
+    if (!fits)
+        PyErr_SetString(PyExc_ValueError, "expected held values that leave six joints");
+    Py_XDECREF(copy);
+    return fits;
+}
+
+/* solutions(form, T, limits, wish, elimination, most, tables, pattern): fill tables (see module.h) for targets T
+   (m, 4, 4), rigid ones, by a closed form or by elimination, if that is not None; those of an arm whose held joints have
+   the values of `pattern`, which are no numbers elsewhere, if that is not None. Of a form alone (form, T, limits, wish)
+   new tables are made and handed over, but for those of candidates and of what counts for the limits. */
 static PyObject *solutions(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     PyObject *copy = NULL, *made[TABLES] = {NULL}, *all = NULL;
     double wish[SIX];
     Wanted wanted;
+    Held held;
     Tables to;
     void *at[TABLES];
     npy_intp most = MOST_CANDIDATES;
     (void)self;
-    const Form *known = count == 4 || count == 7 ? wanted_of(args, &wanted, wish) : NULL;
-    const Elimination *general = known && count == 7 && args[4] != Py_None ? PyCapsule_GetPointer(args[4], ELIMINATION) : NULL;
+    const Form *known = count == 4 || count == 8 ? wanted_of(args, &wanted, wish) : NULL;
+    const Elimination *general = known && count == 8 && args[4] != Py_None ? PyCapsule_GetPointer(args[4], ELIMINATION) : NULL;
+    int fits = known && !PyErr_Occurred() && held_by(count == 8 ? args[7] : Py_None, &held);
     npy_intp m = 0;
-    const double *from = known && !PyErr_Occurred() ? targets(args[1], &m, &copy) : NULL;
+    const double *from = fits ? targets(args[1], &m, &copy) : NULL;
     if (!from) {
         if (!PyErr_Occurred())
-            PyErr_SetString(PyExc_TypeError, "solutions(form, T, limits, wish[, elimination, most, tables])");
+            PyErr_SetString(PyExc_TypeError, "solutions(form, T, limits, wish[, elimination, most, tables, pattern])");
         goto end;
     }
-    if (count == 7 && (most = listed_at_most(args[5])) < 0)
+    if (count == 8 && (most = listed_at_most(args[5])) < 0)
         goto end;
     const npy_intp rows = rows_of(known, general);
-    if (!batch_tables(count == 7 ? args[6] : NULL, m, rows, SIX, made, at))
+    if (!batch_tables(count == 8 ? args[6] : NULL, m, rows, (int)held.whole, made, at))
         goto end;
     to = (Tables){at[PLAIN], at[INSIDE], at[TRIED], at[CLOSING], at[WITHIN],
                   at[LISTED], at[VALUES], at[POSITION], at[ANGLES]};
     PyThreadState *state = general || m >= LONG ? PyEval_SaveThread() : NULL;
-    if (general)
-        by_elimination(general, known, from, m, &wanted, most, rows, &to);
+    if (held.whole == SIX)
+        answered(known, general, from, m, &wanted, most, rows, &to);
     else
-        by_closed_form(known, from, m, &wanted, most, rows, &to);
+        answered_held(known, general, from, m, &wanted, most, rows, &held, &to);
     if (state)
         PyEval_RestoreThread(state);
     if (count == 4)
@@ -536,7 +601,7 @@ PyMethodDef closed_form_methods[] = {
      "form(chain, links, sizes, tape, constants, leaves, levels, limits): a closed form's handle"},
     {"solution", (PyCFunction)(void (*)(void))solution, METH_FASTCALL, "solution(form, T, limits, wish, elimination)"},
     {"solutions", (PyCFunction)(void (*)(void))solutions, METH_FASTCALL,
-     "solutions(form, T, limits, wish[, elimination, most, tables])"},
+     "solutions(form, T, limits, wish[, elimination, most, tables, pattern])"},
     {"roots", (PyCFunction)(void (*)(void))roots, METH_FASTCALL, "roots(form, elimination)"},
     {"signs", (PyCFunction)(void (*)(void))signs, METH_FASTCALL,
      "signs(chain, size, tape, constants, places): a handle of the signs of postures"},

@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* As robokin.kernel.native_module expects it. */
-#define INTERFACE 9
+#define INTERFACE 10
 
 /* Under which name a robot's facts hold its chain. */
 #define KEPT_CHAIN "chain at once"
