@@ -208,16 +208,17 @@ static void francis_step(double H[][ORDER], int l, int h, double sum, double pro
             if (three)
                 H[k + 2][k - 1] = 0.0;
         }
+        /* And on the columns, from below: the next step begins with the last rows, and need not wait for the others. */
         int last = h < k + 3 ? h : k + 3;
         if (three)
-            for (int i = l; i <= last; i++) {
+            for (int i = last; i >= l; i--) {
                 double p = fu * H[i][k] + fy * H[i][k + 1] + fz * H[i][k + 2];
                 H[i][k] -= u * p;
                 H[i][k + 1] -= y * p;
                 H[i][k + 2] -= z * p;
             }
         else
-            for (int i = l; i <= h; i++) {
+            for (int i = h; i >= l; i--) {
                 double p = fu * H[i][k] + fy * H[i][k + 1];
                 H[i][k] -= u * p;
                 H[i][k + 1] -= y * p;
