@@ -31,6 +31,7 @@ MODULE = [
     "module.c",
     "arguments.c",
     "closed_forms.c",
+    "curves.c",
     "descents.c",
     "elimination.c",
     "number_text.c",

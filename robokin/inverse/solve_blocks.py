@@ -11,6 +11,8 @@ from robokin.inverse.elimination.complex_newton import SURE
 from robokin.inverse.second_look import look_again
 from robokin.inverse.verify import Found, distinct, distinct_and_close, merged, nothing
 from robokin.inverse.window import SINGULAR, TOLD_APART, beyond_chain, nearly_singular, solve_window
+from robokin.inverse.window_form import window_form
+from robokin.kernel.native_kernel import native
 from robokin.spatial import invert, rotation_transform
 
 BLOCK = 4000
@@ -182,7 +184,7 @@ def _solve_held(analysis: Analysis, T: Array, held: Array) -> Found:
     parts = []
     flat = inner.reshape(m * k, 4, 4)
     for start in range(0, m * k, BLOCK):
-        part = solve_window(analysis, np.ascontiguousarray(flat[start : start + BLOCK]), count=False)[0]
+        part = held_solutions(analysis, np.ascontiguousarray(flat[start : start + BLOCK]))
         # What differs in a held joint is different: only the few solutions of one row need a comparison.
         part = distinct(part, chain.revolute[window.first : window.last], analysis.size)
         index = part.index + start
@@ -192,6 +194,22 @@ def _solve_held(analysis: Analysis, T: Array, held: Array) -> Found:
     for part in parts:
         found = merged(found, part)
     return found
+
+
+def held_solutions(analysis: Analysis, T: Array) -> Found:
+    """Solutions of the window of a redundant arm for its own targets (m, 4, 4), by target: what is plain by the native
+    kernel, if it has the closed form."""
+    form = window_form(analysis)
+    if native is None or form is None or not native.rigid(T):
+        return solve_window(analysis, T, count=False)[0]
+    plain, _, listed, q, position, angle, _ = native.solutions(form, T, False, None)
+    rows = (np.arange(q.shape[1]) < listed[:, None]) & plain[:, None]
+    found = Found(np.nonzero(rows)[0], q[rows], position[rows], angle[rows])
+    rest = np.flatnonzero(~plain)
+    if not len(rest):
+        return found
+    both = merged(found, solve_window(analysis, T[rest], count=False)[0].numbered(rest))
+    return both.pick(np.argsort(both.index, kind="stable"))
 
 
 def at_limits(analysis: Analysis, limits: Array) -> Array:

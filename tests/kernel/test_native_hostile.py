@@ -77,6 +77,7 @@ def asked(rng):
     T, left = robokin.forward_kinematics(robot, q), rng.normal(size=(3, 6))
     robokin.follow_line(robot, np.full(7, 0.5), robokin.forward_kinematics(robot, np.full(7, 0.6)), 50, limits=False)
     arm = native_kernel.handle(test_native_descents.chain_of(robot))
+    assert robokin.solve_ik(robot, T[0]).families
     native.finely_closed(arm, T, q, left, 1.0, 6, 0.1, 1e-9, 1e-14)
     native.regular(test_native_descents.native_loop(analysis.loop), rng.normal(size=(3, 12)), np.full(3, 0.1))
 

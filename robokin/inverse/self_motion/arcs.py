@@ -21,6 +21,7 @@ import numpy as np
 
 from robokin.arrays import Array, Index
 from robokin.inverse.self_motion.curve_tracing import Curve
+from robokin.inverse.self_motion.native_curves import native_pieces
 from robokin.inverse.self_motion.pose_correction import CLOSES, corrected
 from robokin.inverse.self_motion.track import CROSSING, ROUNDING, Tracks, zeros
 from robokin.inverse.solutions import Arc
@@ -75,9 +76,12 @@ def arcs_of_each(curves: Sequence[Curve], chain: Chain, T: Array, limits: Array,
     of = np.array([k for k, _ in parts], dtype=np.intp)
     tracks = Tracks([part for _, part in parts], chain, T[of], limits, size)
     arcs: list[list[Arc]] = [[] for _ in curves]
-    found = pieces(tracks)
-    for piece, arc in zip(found, _arcs(tracks, found), strict=True):
-        arcs[of[piece.curve]].append(arc)
+    known = native_pieces(tracks)
+    if known is None:
+        found = pieces(tracks)
+        known = [(piece.curve, arc) for piece, arc in zip(found, _arcs(tracks, found), strict=True)]
+    for k, arc in known:
+        arcs[of[k]].append(arc)
     return [_each_once(some) for some in arcs]
 
 

@@ -16,15 +16,35 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from robokin.arrays import Array, Index
+from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.curve_tracing import Curve
 from robokin.inverse.self_motion.pose_correction import errors
 from robokin.inverse.self_motion.track import Tracks, least
 from robokin.kernel.chain import Chain
+from robokin.kernel.native_kernel import native
 from robokin.kernel.ranks import ROOT_RANK
 
 NEAR = 0.1
 """Singular value at a point of a curve below which it may vanish before the next: it changes by less on the way."""
+
+
+SPARE = 7
+"""Joints of an arm with one to spare: all six singular values but for those at crossings are above zero."""
+
+
+def _along(tracks: Tracks, k: Index) -> tuple[Array, Index, Flags]:
+    """The least singular value (p,) that is not the tangent's at the points of curves k (p,), the rank of each curve
+    (c,), and which are watched."""
+    known = [curve.second for curve in tracks.curves]
+    if tracks.chain.n == SPARE and all(second is not None for second in known):
+        value = np.concatenate([second for second in known if second is not None])
+        whole = np.maximum.reduceat(value, tracks.first) > ROOT_RANK
+        return value, np.where(whole, SPARE - 1, 1), whole
+    _, J = errors(tracks.chain, tracks.T[k], tracks.points, tracks.size)
+    sampled = np.linalg.svd(J, compute_uv=False)
+    rank = np.maximum.reduceat(np.sum(sampled > ROOT_RANK, axis=1), tracks.first)
+    watched = (rank > 0) & ((tracks.chain.n <= 6) | (rank == 6))
+    return sampled[np.arange(len(k)), rank[k] - 1], rank, watched
 
 
 def crossings(curves: Sequence[Curve], chain: Chain, T: Array, size: float) -> tuple[Index, Array]:
@@ -39,19 +59,16 @@ def crossings(curves: Sequence[Curve], chain: Chain, T: Array, size: float) -> t
     free = np.tile([-np.inf, np.inf], (chain.n, 1))
     tracks = Tracks([curves[i] for i in chosen], chain, T[chosen], free, size)
 
-    def values(k: Index, x: Array) -> Array:
-        _, J = errors(chain, tracks.T[k], x, size)
-        return np.asarray(np.linalg.svd(J, compute_uv=False))
-
     k = tracks.of_points
-    sampled = values(k, tracks.points)
-    rank = np.maximum.reduceat(np.sum(sampled > ROOT_RANK, axis=1), tracks.first)
-    watched = (rank > 0) & ((chain.n <= 6) | (rank == 6))
+    value, rank, watched = _along(tracks, k)
 
     def second(k: Index, x: Array) -> Array:
-        return np.asarray(values(k, x)[np.arange(len(x)), rank[k] - 1])
+        _, J = errors(chain, tracks.T[k], x, size)
+        if native is not None and chain.n == SPARE and np.all(rank[k] == SPARE - 1):
+            last: Array = native.least_values(J)
+            return last
+        return np.asarray(np.linalg.svd(J, compute_uv=False)[np.arange(len(x)), rank[k] - 1])
 
-    value = sampled[np.arange(len(k)), rank[k] - 1]
     # The last point of each curve is the first one again.
     end = tracks.first + tracks.last
     inner = np.setdiff1d(np.arange(len(k)), end)

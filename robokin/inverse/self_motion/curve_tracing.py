@@ -12,6 +12,7 @@ Here x are joint values [rad | size] and lengths are in the arm's size.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -39,7 +40,8 @@ class Curve:
     closed: whether it was followed until it closed, the last point then being the first but for full turns; ended:
     why it is not closed ("bound" for a sliding joint or a given bound, "lost" where it could not be followed);
     dimension: of the set it is in; sheets: for a set of two dimensions or more the curves that were followed in it,
-    of which this is the first.
+    of which this is the first; second: (k,) the second least singular values of the Jacobian at the points, where they
+    are known, zero for a null space counted as one.
     """
 
     q: Array
@@ -49,8 +51,9 @@ class Curve:
     ended: str = ""
     dimension: int = 1
     sheets: tuple[Curve, ...] = ()
+    second: Array | None = None
 
-    @property
+    @cached_property
     def x(self) -> Array:
         """(k, n) the points in x [rad | size]."""
         return np.asarray(self.q / self.scale)
@@ -130,7 +133,7 @@ def _line(chain: Chain, T: Array, x: Array, line: Array, size: float, limits: Ar
 
 def _followed(fronts: Fronts, i: int) -> Curve:
     """Curve i of the fronts."""
-    points, tangents = fronts.points(i)
+    points, tangents, second = fronts.points(i)
     closed = bool(fronts.closed[i])
     ended = "" if closed else max(fronts.ended[i], fronts.ended[i + fronts.s])
-    return Curve(points * fronts.scale, tangents, fronts.scale, closed, ended)
+    return Curve(points * fronts.scale, tangents, fronts.scale, closed, ended, second=second)

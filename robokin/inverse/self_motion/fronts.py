@@ -120,14 +120,13 @@ class Fronts:
         self.x = np.concatenate([x, x])
         self.t = np.concatenate([ways, -ways])
         self.t /= np.linalg.norm(self.t, axis=1, keepdims=True)
-        self.seeds = self.x.copy(), self.t.copy()
         self.moved_on = np.zeros(2 * self.s, dtype=np.intp)
         self.bend = np.zeros_like(self.x)
         self.alive = np.ones(2 * self.s, dtype=bool)
         self.count = np.zeros(2 * self.s, dtype=np.intp)
         self.closed, self.stays = np.zeros(self.s, dtype=bool), np.zeros(self.s, dtype=bool)
         self.ended, self.codes = [""] * (2 * self.s), np.zeros(2 * self.s)
-        self.history: list[tuple[Index, Array, Array]] = []
+        self.history: list[tuple[Index, Array, Array, Array]] = []
         self.locks = np.where(np.concatenate([locked, locked])[:, :, None], np.eye(self.n), 0.0)
         self.locking = bool(locked.any())
         # What one curve comes to is not to depend on what others are followed beside it.
@@ -137,6 +136,7 @@ class Fronts:
         _, J = errors(chain, self.T, self.x, size)
         values = np.linalg.svd(np.concatenate([J, self.locks], axis=1), compute_uv=False)[:, self.n - 2]
         self.second = values
+        self.seeds = self.x.copy(), self.t.copy(), values.copy()
         self.slow = values <= THIN
         self.slow = np.tile(self.slow[: self.s] | self.slow[self.s :], 2)
         self.h = np.where(values > THIN, np.clip(2.0 * values, APPROACH, FIRST), FIRST)
@@ -154,7 +154,7 @@ class Fronts:
     def away(self) -> Flags:
         """(s,) which curves have led away from their seeds."""
         far = np.zeros(2 * self.s)
-        for rows, points, _ in self.history:
+        for rows, points, *_ in self.history:
             far[rows] = np.maximum(far[rows], np.linalg.norm(points - self.seeds[0][rows], axis=1))
         return np.asarray(self.closed | (np.max(far.reshape(2, -1), axis=0) >= AWAY))
 
@@ -191,7 +191,8 @@ class Fronts:
             self.ended[row] = ENDS[int(codes[row])]
         self.codes = codes
         if len(points):
-            self.history.append((points[:, 0].astype(np.intp), points[:, 1 : 1 + n], points[:, 1 + n :]))
+            rows, x, t, second = np.split(points, [1, 1 + n, 1 + 2 * n], axis=1)
+            self.history.append((rows[:, 0].astype(np.intp), x, t, second[:, 0]))
         return left, waits > 0.0
 
     def advance(self, some: Flags) -> None:
@@ -264,7 +265,7 @@ class Fronts:
         self._slow_down(went, self.second[went], second[good], length)
         self.x[went], self.t[went], self.second[went], self.moved_on[went] = new[good], ahead[good], second[good], 0
         self.count[went] += 1
-        self.history.append((went, new[good], ahead[good]))
+        self.history.append((went, new[good], ahead[good], second[good]))
         beyond = np.any((new[good] < self.low[went]) | (new[good] > self.high[went]), axis=1)
         self.h[failed] *= 0.5
         self.bend[failed] = 0.0
@@ -307,27 +308,33 @@ class Fronts:
                 t = nearest if abs(float(nearest @ before)) > 0.5 else t
         return np.asarray(t / max(float(np.linalg.norm(t)), 1e-12))
 
-    def points(self, i: int) -> tuple[Array, Array]:
-        """The points (k, n) of curve i in order and the tangents (k, n) there; the last closes it if it is closed."""
+    def points(self, i: int) -> tuple[Array, Array, Array]:
+        """The points (k, n) of curve i in order, the tangents (k, n) and the second least singular values (k,) there.
+
+        The last point closes the curve if it is closed.
+        """
         forward, backward = self._side(i), self._side(i + self.s)
         points = np.concatenate([backward[0][:0:-1], forward[0]])
         tangents = np.concatenate([-backward[1][:0:-1], forward[1]])
+        second = np.concatenate([backward[2][:0:-1], forward[2]])
         if self.closed[i]:
             turns = np.where(self.chain.revolute, TURN * np.round((points[-1] - points[0]) / TURN), 0.0)
-            points[-1], tangents[-1] = points[0] + turns, tangents[0]
-        return points, tangents
+            points[-1], tangents[-1], second[-1] = points[0] + turns, tangents[0], second[0]
+        return points, tangents, second
 
     @cached_property
-    def _sides(self) -> tuple[Array, Array, Index]:
-        """The points and tangents of all fronts that have come to their ends, and where each front's begin."""
+    def _sides(self) -> tuple[Array, Array, Array, Index]:
+        """What is said of the points of all fronts that have come to their ends, and where each front's begin."""
         every = np.arange(2 * self.s)
-        rows = np.concatenate([every, *(rows for rows, _, _ in self.history)])
+        rows = np.concatenate([every, *(part[0] for part in self.history)])
         order = np.argsort(rows, kind="stable")
-        x = np.concatenate([self.seeds[0], *(x for _, x, _ in self.history)])[order]
-        t = np.concatenate([self.seeds[1], *(t for _, _, t in self.history)])[order]
-        return x, t, np.searchsorted(rows[order], np.arange(2 * self.s + 1))
+        x, t, second = (
+            np.concatenate([self.seeds[k], *(part[1 + k] for part in self.history)])[order] for k in range(3)
+        )
+        return x, t, second, np.searchsorted(rows[order], np.arange(2 * self.s + 1))
 
-    def _side(self, row: int) -> tuple[Array, Array]:
-        """The points and tangents of a front, the seed first."""
-        x, t, first = self._sides
-        return x[first[row] : first[row + 1]], t[first[row] : first[row + 1]]
+    def _side(self, row: int) -> tuple[Array, Array, Array]:
+        """The points of a front, the seed first, the tangents and second least singular values."""
+        *parts, first = self._sides
+        x, t, second = (part[first[row] : first[row + 1]] for part in parts)
+        return x, t, second

@@ -81,7 +81,11 @@ def suspected(chain: Chain, T: Array, q: Array, size: float, alone: bool = True)
     trying[single[np.isfinite(folds.mu)]] = False
     ways = [np.empty((0, chain.n))] * len(x)
     dimension = np.where(manifold, null, 0)
-    for i in np.flatnonzero(manifold):
+    # The one null vector of a Jacobian of full rank is the direction.
+    plain = np.flatnonzero(manifold & (null == 1))
+    for i, Vt in zip(plain.tolist(), np.linalg.svd(J[plain])[2], strict=True):
+        ways[i] = Vt[6:]
+    for i in np.flatnonzero(manifold & (null > 1)).tolist():
         ways[i] = cone(J[i])[0]
     trial = _follow(chain, T, x, J, np.flatnonzero(trying), size, ways, dimension)
     if alone:
@@ -260,7 +264,7 @@ def traced_sets(
         if head is None:
             out.append(None)
             continue
-        out.append(Curve(head.q, head.tangents, scale, head.closed, head.ended, dimension, sheets))
+        out.append(Curve(head.q, head.tangents, scale, head.closed, head.ended, dimension, sheets, head.second))
     return out
 
 

@@ -22,6 +22,7 @@ import numpy as np
 from robokin.arrays import Array, Flags, Index
 from robokin.inverse.self_motion.curve_tracing import BESIDE, Curve
 from robokin.inverse.self_motion.fronts import LONGEST, SAME
+from robokin.inverse.self_motion.native_curves import ON, levels_of
 from robokin.inverse.self_motion.pose_correction import CLOSES, SLOW_STEPS, corrected, errors, scale_of
 from robokin.inverse.self_motion.singular_solutions import Local, stand_alone, suspected, traced_sets
 from robokin.kernel.chain import Chain
@@ -184,9 +185,13 @@ def _pairs_through(
 
 def _through(chain: Chain, T: Array, curves: list[Curve], x: Array, ways: Array, size: float) -> Flags:
     """(m,) whether each of m sets runs through its x (m, n) in its direction (m, n), T: (m, 4, 4) being the targets."""
-    rows, tangents = _passes(curves, chain, T, x, size)
-    along = np.abs(np.einsum("ij,ij->i", tangents, ways[rows])) >= ALONG
-    on = np.isin(np.arange(len(x)), rows[along])
+    levels = levels_of(curves, chain, T, x, ways, size)
+    if levels is None:
+        rows, tangents = _passes(curves, chain, T, x, size)
+        along = np.abs(np.einsum("ij,ij->i", tangents, ways[rows])) >= ALONG
+        on = np.isin(np.arange(len(x)), rows[along])
+    else:
+        on = levels > ON
     for i in [i for i, curve in enumerate(curves) if curve.sheets]:
         # A seed on a curve is asked for on the curves that were followed on a surface, not on all of it.
         sheets = curves[i].sheets
@@ -210,7 +215,7 @@ def on_curve(curve: Curve, chain: Chain, T: Array, q: Array, size: float) -> Fla
 def _passes(curves: list[Curve], chain: Chain, T: Array, x: Array, size: float) -> tuple[Index, Array]:
     """Where each of m curves at T (m, 4, 4) passes through its x (m, n): rows (k,) of x, tangents (k, n) there.
 
-    A curve that crosses itself passes more than once.
+    A curve that crosses itself passes more than once. The native kernel has the same (`native_curves.levels_of`).
     """
     none = np.empty((0, chain.n))
     parts = [(np.empty(0, dtype=np.intp), none, none)]

@@ -39,7 +39,7 @@ typedef struct {
     double size, plain_steps; /* of a correction; curves that are allowed more wait */
     const double *targets, *steps_of, *low, *high;
     double *state, *closed, *left, *waits;
-    double *history; /* of each point the front, the place and the tangent */
+    double *history; /* of each point the front, the place, the tangent and the second least singular value */
     ptrdiff_t used, room;
     ptrdiff_t *rows;
     double *T, *guess, *led, *normals, *gaps, *tangents, *most, *off, *seconds, *J;
@@ -59,6 +59,7 @@ typedef struct {
     void turned##name(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *, int, \
                       double *);                                                                                       \
     int advanced##name(const Chain *, Fronts *);                                                                       \
+    void least_values##name(const double *, ptrdiff_t, int, double *);                                                 \
     void refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double *);                             \
     void complex_refined##name(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);              \
     void tracked##name(const Chain *, const double *, const double *, const double *, ptrdiff_t, double *, double *); \

@@ -405,7 +405,7 @@ static PyObject *advanced(PyObject *self, PyObject *const *args, Py_ssize_t coun
         return NULL;
     }
     F.n = (int)n;
-    const npy_intp wide = 3 * n + FRONT_NUMBERS, point = 1 + 2 * n;
+    const npy_intp wide = 3 * n + FRONT_NUMBERS, point = 2 + 2 * n;
     const Given of_fronts[] = {{1, 16, &m}, {2, 1, &m}, {3, n, &m}, {4, n, &m}, {5, wide, &m}};
     const double *from[5], *of_curves[2];
     if (!all_tables(args, of_fronts, 5, from, copies))
@@ -470,6 +470,25 @@ end:
     return all;
 }
 
+static PyObject *least_values(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copy = NULL, *least = NULL;
+    (void)self;
+    if (count != 1) {
+        PyErr_SetString(PyExc_TypeError, "least_values(J)");
+        return NULL;
+    }
+    PyArrayObject *J = doubles(args[0], 3, &copy);
+    if (!J)
+        return NULL;
+    npy_intp m = PyArray_DIM(J, 0), n = PyArray_DIM(J, 2);
+    if (PyArray_NDIM(J) != 3 || PyArray_DIM(J, 1) != 6 || !n || n > MOST_MOVED)
+        PyErr_SetString(PyExc_ValueError, "expected Jacobians (m, 6, n)");
+    else if ((least = new_numbers(m, 0)))
+        lanes.least_values(PyArray_DATA(J), m, (int)n, numbers_of(least));
+    Py_XDECREF(copy);
+    return least;
+}
+
 PyMethodDef descent_methods[] = {
     {"advanced", (PyCFunction)(void (*)(void))advanced, METH_FASTCALL,
      "advanced(chain, T, most, low, high, state, closed, left, size, plain): state, closed, left, waits, points"},
@@ -481,6 +500,7 @@ PyMethodDef descent_methods[] = {
      "gone_down(chain, T, x, size, low, high, weight, steps, still, least): values (m, n) and f's parts (m, 2)"},
     {"turned", (PyCFunction)(void (*)(void))turned, METH_FASTCALL,
      "turned(chain, T, x, size, low, high, steps): values (m, n), and what is left as `gone_down` has it (m, 2)"},
+    {"least_values", (PyCFunction)(void (*)(void))least_values, METH_FASTCALL, "least_values(J): (m,) of J (m, 6, n)"},
     {"corrected", (PyCFunction)(void (*)(void))corrected, METH_FASTCALL,
      "corrected(chain, T, normals, extra, most, x, size, settled, zero): (m, n), (m,), (m, 6, n)"},
     {"shortest", (PyCFunction)(void (*)(void))shortest, METH_FASTCALL, "shortest(A, b, zero): dx (m, n)"},

@@ -104,11 +104,79 @@ static void met(const Chain *chain, const Fronts *all) {
     }
 }
 
+/* Steps of the inverse iteration for a least singular value, and when it has settled; smaller ones are Jacobi's. */
+#define INVERSE_STEPS 24
+#define INVERSE_SETTLED 1e-13
+#define INVERSE_LEAST 1e-5
+
+/* The null vector t of a Jacobian (6, 7) and its least singular value, by Householder's reflections of its rows and
+   inverse iteration on what these leave, a triangle; 0 where that is not sure of itself. */
+static int plain_tangent(const double *J, double *t, double *least) {
+    double w[6][7], R[6][6], v[6], y[6], over[6], before = 0.0;
+    for (int k = 0; k < 6; k++)
+        memcpy(w[k], J + 7 * k, 7 * sizeof(double));
+    for (int k = 0; k < 6; k++) {
+        double length = sqrt(inner(7 - k, w[k] + k, w[k] + k)), squared;
+        length = w[k][k] > 0.0 ? -length : length;
+        if (!(fabs(length) > 1e-8))
+            return 0;
+        R[k][k] = length;
+        over[k] = 1.0 / length;
+        w[k][k] -= length;
+        squared = inner(7 - k, w[k] + k, w[k] + k);
+        for (int j = k + 1; j < 6; j++) {
+            double part = 2.0 * inner(7 - k, w[k] + k, w[j] + k) / squared;
+            for (int i = k; i < 7; i++)
+                w[j][i] -= part * w[k][i];
+            R[k][j] = w[j][k];
+        }
+    }
+    for (int i = 0; i < 7; i++)
+        t[i] = i == 6;
+    for (int k = 5; k >= 0; k--) {
+        double part = 2.0 * inner(7 - k, w[k] + k, t + k) / inner(7 - k, w[k] + k, w[k] + k);
+        for (int i = k; i < 7; i++)
+            t[i] -= part * w[k][i];
+    }
+    /* Uneven, so that it is at right angles to nothing that is meant. */
+    for (int i = 0; i < 6; i++)
+        v[i] = 0.3 + 0.61803398874989 * i - floor(0.61803398874989 * i);
+    for (int step = 0; step < INVERSE_STEPS; step++) {
+        double length = 1.0 / sqrt(inner(6, v, v)), quotient;
+        for (int i = 0; i < 6; i++) {
+            double sum = v[i] *= length;
+            for (int j = 0; j < i; j++)
+                sum -= R[j][i] * y[j];
+            y[i] = sum * over[i];
+        }
+        /* Rayleigh's quotient of the inverse. */
+        quotient = inner(6, y, y);
+        for (int i = 5; i >= 0; i--) {
+            double sum = y[i];
+            for (int j = i + 1; j < 6; j++)
+                sum -= R[i][j] * v[j];
+            v[i] = sum * over[i];
+        }
+        if (fabs(quotient - before) <= INVERSE_SETTLED * quotient) {
+            *least = 1.0 / sqrt(quotient);
+            return *least > INVERSE_LEAST;
+        }
+        before = quotient;
+    }
+    return 0;
+}
+
 /* The null vector of a Jacobian (6, n), on in the direction of `before`, and the second least singular value; 0 where
    that is none and there are several. */
 static int tangent_of(int n, const double *J, const double *before, double *t, double *second) {
     double w[MOST_ROWS][MOST_ROWS], V[MOST_ROWS][MOST_ROWS], values[MOST_ROWS];
     int wide = n > 6, c = wide ? 6 : n, p = wide ? n : 6, least = 0;
+    if (n == 7 && plain_tangent(J, t, second)) {
+        if (inner(n, t, before) < 0.0)
+            for (int j = 0; j < n; j++)
+                t[j] = -t[j];
+        return 1;
+    }
     for (int i = 0; i < c; i++)
         for (int r = 0; r < p; r++)
             w[i][r] = wide ? J[n * i + r] : J[n * r + i];
@@ -146,7 +214,7 @@ static int has_history(Fronts *all) {
     if (all->room - all->used >= 2 * all->s)
         return 1;
     ptrdiff_t more = 2 * all->room + 16 * all->s;
-    double *larger = realloc(all->history, (size_t)(more * (1 + 2 * all->n)) * sizeof(double));
+    double *larger = realloc(all->history, (size_t)(more * (2 + 2 * all->n)) * sizeof(double));
     if (!larger)
         return 0;
     all->history = larger;
@@ -184,7 +252,7 @@ static void judged_front(Fronts *all, ptrdiff_t k, ptrdiff_t row, const double *
     double rate = (*a.second - second) / length;
     if (rate > 0.0 && *a.second > THIN)
         *a.h = fmin(*a.h, fmax(0.5 * (second / rate), APPROACH));
-    double *put = all->history + (1 + 2 * n) * all->used++;
+    double *put = all->history + (2 + 2 * n) * all->used++;
     *put++ = (double)row;
     for (int j = 0; j < n; j++) {
         a.bend[j] = (ahead[j] - a.t[j]) / length;
@@ -192,7 +260,7 @@ static void judged_front(Fronts *all, ptrdiff_t k, ptrdiff_t row, const double *
         a.t[j] = put[n + j] = ahead[j];
         beyond |= x[j] < all->low[n * row + j] || x[j] > all->high[n * row + j];
     }
-    *a.second = second;
+    *a.second = put[2 * n] = second;
     *a.moved_on = 0.0;
     *a.count += 1.0;
     if (beyond) {
@@ -232,5 +300,24 @@ int NAMED(advanced)(const Chain *chain, Fronts *all) {
         for (ptrdiff_t k = 0; k < count; k++)
             if (all->waits[all->rows[k] % all->s] == 0.0)
                 judged_front(all, k, all->rows[k], all->tangents + n * k, all->seconds[k]);
+    }
+}
+
+/* The least singular value of each of some Jacobians (m, 6, n) of a rank of six at most. */
+void NAMED(least_values)(const double *J, ptrdiff_t m, int n, double *least) {
+    double t[7];
+    for (ptrdiff_t k = 0; k < m; k++) {
+        double w[MOST_ROWS][MOST_ROWS], V[MOST_ROWS][MOST_ROWS];
+        const double *own = J + 6 * n * k;
+        int wide = n > 6, c = wide ? 6 : n, p = wide ? n : 6;
+        if (n == 7 && plain_tangent(own, t, least + k))
+            continue;
+        for (int i = 0; i < c; i++)
+            for (int r = 0; r < p; r++)
+                w[i][r] = wide ? own[n * i + r] : own[n * r + i];
+        jacobi(p, c, w, V);
+        least[k] = HUGE_VAL;
+        for (int i = 0; i < c; i++)
+            least[k] = fmin(least[k], sqrt(inner(p, w[i], w[i])));
     }
 }

@@ -22,8 +22,8 @@
 /* In the order of Lanes. */
 #define LANES(name)                                                                                                    \
     {poses##name, frames##name, jacobians##name, errors##name, descended##name, corrected##name, gone_down##name,      \
-     turned##name, advanced##name, refined##name, complex_refined##name, tracked##name, regulars##name,                \
-     shortest_of##name, finely_closed##name, followed_rows##name, solution##name, solutions##name, sides##name,        \
+     turned##name, advanced##name, least_values##name, refined##name, complex_refined##name, tracked##name,            \
+     regulars##name, shortest_of##name, finely_closed##name, followed_rows##name, solution##name, solutions##name, sides##name,        \
      prepared_elimination##name, eliminated##name, tried_candidates##name, listed_elimination##name}
 
 static const Lanes base = LANES(_base);
@@ -412,6 +412,7 @@ static PyMethodDef methods[] = {
 /* The methods of other files. */
 static PyMethodDef *const more_methods[] = {
     closed_form_methods,
+    curve_methods,
     descent_methods,
     elimination_methods,
     number_text_methods,

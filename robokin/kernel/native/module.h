@@ -39,6 +39,7 @@ typedef struct {
     void (*turned)(const Chain *, const double *, double *, ptrdiff_t, double, const double *, const double *, int,
                    double *);
     int (*advanced)(const Chain *, Fronts *);
+    void (*least_values)(const double *, ptrdiff_t, int, double *);
     void (*refined)(const Chain *, const double *, double *, ptrdiff_t, int, double *);
     void (*complex_refined)(const Chain *, const double *, double *, ptrdiff_t, int, double, double *);
     void (*tracked)(const Chain *, const double *, const double *, const double *, ptrdiff_t, double *, double *);
@@ -59,7 +60,7 @@ typedef struct {
 } Lanes;
 
 /* Methods of the other files. */
-extern PyMethodDef closed_form_methods[], descent_methods[], elimination_methods[], number_text_methods[],
+extern PyMethodDef closed_form_methods[], curve_methods[], descent_methods[], elimination_methods[], number_text_methods[],
     solution_object_methods[], swivel_methods[], told_apart_methods[];
 
 /* The set in use. */
