@@ -6,7 +6,7 @@ from library_entries import entry
 
 import robokin
 from robokin.inverse.analysis import analysis_of
-from robokin.inverse.self_motion import curve_crossings, native_curves, solution_sets
+from robokin.inverse.self_motion import curve_crossings, native_curves, solution_sets, spread
 from robokin.inverse.self_motion.arcs import arcs_of_each
 from robokin.inverse.self_motion.curve_crossings import crossings
 from robokin.inverse.self_motion.solution_sets import families
@@ -104,3 +104,13 @@ def test_least_singular_values_are_those_of_lapack(rng):
     assert np.allclose(native.least_values(J), right, rtol=1e-11, atol=1e-14)
     six = np.ascontiguousarray(J[:, :, :6])
     assert np.allclose(native.least_values(six), np.linalg.svd(six, compute_uv=False)[:, -1], rtol=1e-11, atol=1e-14)
+
+
+def test_spread_ones_are_those_of_python(rng):
+    for count in (1, 5, 200):
+        x = np.concatenate([rng.uniform(-np.pi, np.pi, (count, 7)), np.radians(30.0) * rng.integers(-6, 7, (count, 7))])
+        move, rank = rng.uniform(size=2 * count), 1e3 * rng.integers(0, 2, 2 * count)
+        for most in (1, 16, 64):
+            for preferred in (None, rank):
+                places = native.spread(x.T, move, most, preferred)
+                assert places.tolist() == spread._spread_by_rows(x.T, move, most, preferred).tolist()

@@ -68,7 +68,10 @@ def suspected(chain: Chain, T: Array, q: Array, size: float, alone: bool = True)
     """
     scale = scale_of(chain, size)
     x, off, J = corrected(chain, T, q / scale, size)
-    null = chain.n - np.sum(np.linalg.svd(J, compute_uv=False) > ROOT_RANK, axis=1)
+    # Of an arm with a joint to spare the null vectors are wanted as well.
+    spare = chain.n > J.shape[1]
+    values, Vt = np.linalg.svd(J)[1:] if spare else (np.linalg.svd(J, compute_uv=False), J)
+    null = chain.n - np.sum(values > ROOT_RANK, axis=1)
     exact = np.where(off[:, None] <= CLOSES, x * scale, q)
     double = np.zeros(len(x), dtype=bool)
     # With a Jacobian of full rank the solutions are a manifold, and at a fold no curve leaves: neither is tried.
@@ -82,9 +85,8 @@ def suspected(chain: Chain, T: Array, q: Array, size: float, alone: bool = True)
     ways = [np.empty((0, chain.n))] * len(x)
     dimension = np.where(manifold, null, 0)
     # The one null vector of a Jacobian of full rank is the direction.
-    plain = np.flatnonzero(manifold & (null == 1))
-    for i, Vt in zip(plain.tolist(), np.linalg.svd(J[plain])[2], strict=True):
-        ways[i] = Vt[6:]
+    for i in np.flatnonzero(manifold & (null == 1)).tolist():
+        ways[i] = Vt[i, 6:]
     for i in np.flatnonzero(manifold & (null > 1)).tolist():
         ways[i] = cone(J[i])[0]
     trial = _follow(chain, T, x, J, np.flatnonzero(trying), size, ways, dimension)

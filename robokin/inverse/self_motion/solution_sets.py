@@ -86,6 +86,7 @@ def families(
         waiting = _unclaimed(chain, T, waiting, index, curves, of, local, size)
     while waiting:
         chosen = _few_of_each(waiting, index)
+        known_before = [len(some) for some in curves]
         done = set(chosen)
         traced = traced_sets(chain, T[index], local, chosen, size, limits)
         single += [entry[0] for entry, curve in zip(chosen, traced, strict=True) if curve is None]
@@ -102,7 +103,7 @@ def families(
                 of[i] = of[found[first][0][0]]
         waiting = [entry for entry in waiting if entry not in done]
         waiting = _within_bounds(waiting, index, curves, of, local, open_)
-        waiting = _unclaimed(chain, T, waiting, index, curves, of, local, size)
+        waiting = _unclaimed(chain, T, waiting, index, curves, of, local, size, known_before)
     if alone:
         stand_alone(chain, T[index], local, np.array(single, dtype=np.intp), size)
     return Families(curves, of, local, frozenset(open_))
@@ -147,8 +148,12 @@ def _unclaimed(
     of: Index,
     local: Local,
     size: float,
+    before: list[int] | None = None,
 ) -> list[tuple[int, int]]:
-    """The waiting entries that no curve runs through; `of` is filled in for the others."""
+    """The waiting entries that no curve runs through; `of` is filled in for the others.
+
+    before: of each target how many of its first curves are known to run through none.
+    """
     scale = scale_of(chain, size)
     by_target: dict[int, list[tuple[int, int]]] = {}
     for entry in waiting:
@@ -158,6 +163,7 @@ def _unclaimed(
         for target, entries in by_target.items()
         for entry in entries
         for number, curve in enumerate(curves[target])
+        if before is None or number >= before[target]
     ]
     claimed: dict[tuple[int, int], int] = {}
     x = np.array([local.q[entry[0]] for entry, _, _ in pairs]).reshape(-1, chain.n) / scale

@@ -14,6 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from robokin.arrays import Array, Flags, Index
+from robokin.kernel.native_kernel import native
 from robokin.spatial.angles import TURN
 
 CELLS = 2**15
@@ -59,6 +60,14 @@ def spread_of_one(x: Array, move: Array, most: int, preferred: Array | None = No
 
     move: (s,); preferred: (s,) what is added to a distance, if anything.
     """
+    if native is not None and x.size:
+        places: Index = native.spread(x, move, most, preferred)
+        return places
+    return _spread_by_rows(x, move, most, preferred)
+
+
+def _spread_by_rows(x: Array, move: Array, most: int, preferred: Array | None) -> Index:
+    """`spread_of_one` in Python."""
     n, count = x.shape
     away, back, gap, distance = np.empty((n, count)), np.empty((n, count)), np.empty(count), np.full(count, np.inf)
     least = np.rint(move * 10.0**DECIMALS)

@@ -63,7 +63,7 @@ typedef struct {
 } Foot;
 
 static double circled_at(const Chain *chain, int i, double x) {
-    return chain->revolute[i] ? x - FULL_TURN * nearbyint(x / FULL_TURN) : x;
+    return chain->revolute[i] ? x - FULL_TURN * rounded(x / FULL_TURN) : x;
 }
 
 /* The distance of x from the chord that begins at point p, and what part of the chord is next to it. */
@@ -287,10 +287,84 @@ end:
     return both;
 }
 
+/* Distances are told apart to so many parts of a radian: see `spread`. */
+#define SPREAD_PARTS 1e7
+
+/* The places of `most` of m configurations x (n, m), each the farthest from those before: see `spread.spread_of_one`. */
+static void put_spread(const double *x, npy_intp n, npy_intp m, const double *move, const double *preferred,
+                       npy_intp most, double *distance, npy_intp *chosen) {
+    npy_intp pick = 0;
+    double best = HUGE_VAL, *gap = distance + m;
+    for (npy_intp k = 0; k < m; k++) {
+        double least = rounded(move[k] * SPREAD_PARTS) - (preferred ? preferred[k] * SPREAD_PARTS : 0.0);
+        distance[k] = HUGE_VAL;
+        if (least < best) {
+            best = least;
+            pick = k;
+        }
+    }
+    chosen[0] = pick;
+    for (npy_intp count = 1; count < most; count++) {
+        npy_intp next = 0;
+        best = -HUGE_VAL;
+        for (npy_intp i = 0; i < n; i++) {
+            const double *row = x + i * m, from = row[pick];
+            for (npy_intp k = 0; k < m; k++) {
+                double away = fabs(row[k] - from), back = FULL_TURN - away, least = back < away ? back : away;
+                gap[k] = i && gap[k] > least ? gap[k] : least;
+            }
+        }
+        for (npy_intp k = 0; k < m; k++) {
+            double to = rounded(gap[k] * SPREAD_PARTS);
+            distance[k] = to < distance[k] ? to : distance[k];
+        }
+        distance[pick] = -HUGE_VAL;
+        for (npy_intp k = 0; k < m; k++) {
+            double value = preferred ? distance[k] + preferred[k] * SPREAD_PARTS : distance[k];
+            if (value > best) {
+                best = value;
+                next = k;
+            }
+        }
+        pick = chosen[count] = next;
+    }
+}
+
+static PyObject *spread(PyObject *self, PyObject *const *args, Py_ssize_t count) {
+    PyObject *copies[3] = {NULL, NULL, NULL}, *chosen = NULL;
+    (void)self;
+    if (count != 4) {
+        PyErr_SetString(PyExc_TypeError, "spread(x, move, most, preferred or None)");
+        return NULL;
+    }
+    long asked = PyLong_AsLong(args[2]);
+    PyArrayObject *x = PyErr_Occurred() ? NULL : doubles(args[0], 2, &copies[0]);
+    npy_intp n = x ? PyArray_DIM(x, 0) : 0, m = x ? PyArray_DIM(x, 1) : 0;
+    const double *move = x ? table(args[1], 1, &m, &copies[1]) : NULL;
+    const double *preferred = move && args[3] != Py_None ? table(args[3], 1, &m, &copies[2]) : NULL;
+    if (!move || PyErr_Occurred())
+        goto end;
+    if (PyArray_NDIM(x) != 2 || !m || !n || asked < 1) {
+        PyErr_SetString(PyExc_ValueError, "expected configurations (n, m), and a number of them");
+        goto end;
+    }
+    const npy_intp shape[] = {asked < m ? asked : m};
+    double *distance = malloc(2 * (size_t)m * sizeof(double));
+    chosen = distance ? PyArray_EMPTY(1, shape, NPY_INTP, 0) : PyErr_NoMemory();
+    if (chosen)
+        put_spread(PyArray_DATA(x), n, m, move, preferred, shape[0], distance, PyArray_DATA((PyArrayObject *)chosen));
+    free(distance);
+end:
+    for (int i = 0; i < 3; i++)
+        Py_XDECREF(copies[i]);
+    return chosen;
+}
+
 PyMethodDef curve_methods[] = {
     {"passes", (PyCFunction)(void (*)(void))passes, METH_FASTCALL,
      "passes(chain, size, T, points, tangents, counts, x, ways, pairs): levels (p,)"},
     {"pieces_within", (PyCFunction)(void (*)(void))pieces_within, METH_FASTCALL,
      "pieces_within(chain, size, T, points, tangents, counts, limits, curves): pieces (p, 3) and points (k, n)"},
+    {"spread", (PyCFunction)(void (*)(void))spread, METH_FASTCALL, "spread(x, move, most, preferred): places of (n, m)"},
     {NULL, NULL, 0, NULL},
 };

@@ -72,6 +72,9 @@ static double *new_row(Rows *rows) {
     return rows->v + rows->width * rows->used++;
 }
 
+/* The nearest whole number, the even one of two, of what is below 2^51: without a call of the C library. */
+static double rounded(double x) { return (x + 6755399441055744.0) - 6755399441055744.0; }
+
 static double dot_of(int n, const double *a, const double *b) {
     double sum = 0.0;
     for (int i = 0; i < n; i++)
@@ -151,7 +154,7 @@ static void put_waiting(const Track *t, Waiting *w, const double *x, const doubl
 static void point_at(const Track *t, Waiting *w, double u, double *to) {
     double x[MOST_TRACKED], way[MOST_TRACKED];
     cubic_at(t, u, x, way);
-    if (!(fabs(u - nearbyint(u)) > BESIDE_POINT) || !t->last) {
+    if (!(fabs(u - rounded(u)) > BESIDE_POINT) || !t->last) {
         memcpy(to, x, (size_t)t->n * sizeof(double));
         return;
     }
@@ -408,7 +411,7 @@ static Sample *samples_of(const Track *t, ptrdiff_t *count) {
     for (ptrdiff_t i = 0; i < m; i++) {
         for (; k < more.used && more.v[k] <= s[i].u; k++) {
             double u = more.v[k];
-            if ((k && u == more.v[k - 1]) || u * TRACK_PARTS == nearbyint(u * TRACK_PARTS))
+            if ((k && u == more.v[k - 1]) || u * TRACK_PARTS == rounded(u * TRACK_PARTS))
                 continue;
             all[from].u = u;
             point_at(t, &w, u, all[from++].x);
