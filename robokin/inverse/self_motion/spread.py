@@ -61,7 +61,7 @@ def spread_of_one(x: Array, move: Array, most: int, preferred: Array | None = No
     move: (s,); preferred: (s,) what is added to a distance, if anything.
     """
     if native is not None and x.size:
-        places: Index = native.spread(x, move, most, preferred)
+        places: Index = native.spread(x, move, max(most, 1), preferred)
         return places
     return _spread_by_rows(x, move, most, preferred)
 

@@ -91,7 +91,8 @@ static void put_levels(const Curves *c, const double *x, const double *ways, con
     int n = (int)c->n, count = w->count;
     for (int k = 0; k < count; k++)
         w->to[k] = from + n * k;
-    lanes.corrected(c->chain, w->T, w->normals, 1, w->most, w->x, count, c->size, PASS_SETTLED, PASS_ZERO, w->off, w->J);
+    lanes.corrected(c->chain, w->T, w->normals, 1, w->most, w->x, count, c->size, PASS_SETTLED, PASS_ZERO, w->off,
+                    w->J);
     for (int k = 0; k < count; k++) {
         const Foot *foot = feet + k;
         npy_intp row = (npy_intp)pairs[2 * foot->pair + 1];
@@ -144,8 +145,9 @@ static int put_passes(const Curves *c, const double *x, const double *ways, cons
             const double *p = c->points + n * k;
             double part, away, other;
             double distance = chord_distance(c->chain, p, at, &part, &away);
-            if (distance <= PASS_BESIDE && (k == begin || distance <= chord_distance(c->chain, p - n, at, &other, NULL)) &&
-                (k + 1 == end || distance <= chord_distance(c->chain, p + n, at, &other, NULL))) {
+            int near = distance <= PASS_BESIDE;
+            near = near && (k == begin || distance <= chord_distance(c->chain, p - n, at, &other, NULL));
+            if (near && (k + 1 == end || distance <= chord_distance(c->chain, p + n, at, &other, NULL))) {
                 Foot *foot = feet + w->count;
                 double along = 0.0, squared = 0.0, place[MOST_TRACKED], start[MOST_TRACKED];
                 const double *t = c->tangents + n * k;
@@ -290,7 +292,7 @@ end:
 /* Distances are told apart to so many parts of a radian: see `spread`. */
 #define SPREAD_PARTS 1e7
 
-/* The places of `most` of m configurations x (n, m), each the farthest from those before: see `spread.spread_of_one`. */
+/* The places of `most` of m configurations x (n, m), each the farthest from those before: see `spread_of_one`. */
 static void put_spread(const double *x, npy_intp n, npy_intp m, const double *move, const double *preferred,
                        npy_intp most, double *distance, npy_intp *chosen) {
     npy_intp pick = 0;
@@ -352,7 +354,8 @@ static PyObject *spread(PyObject *self, PyObject *const *args, Py_ssize_t count)
     double *distance = malloc(2 * (size_t)m * sizeof(double));
     chosen = distance ? PyArray_EMPTY(1, shape, NPY_INTP, 0) : PyErr_NoMemory();
     if (chosen)
-        put_spread(PyArray_DATA(x), n, m, move, preferred, shape[0], distance, PyArray_DATA((PyArrayObject *)chosen));
+        put_spread(PyArray_DATA(x), n, m, move, preferred, shape[0], distance,
+                   PyArray_DATA((PyArrayObject *)chosen));
     free(distance);
 end:
     for (int i = 0; i < 3; i++)
@@ -365,6 +368,7 @@ PyMethodDef curve_methods[] = {
      "passes(chain, size, T, points, tangents, counts, x, ways, pairs): levels (p,)"},
     {"pieces_within", (PyCFunction)(void (*)(void))pieces_within, METH_FASTCALL,
      "pieces_within(chain, size, T, points, tangents, counts, limits, curves): pieces (p, 3) and points (k, n)"},
-    {"spread", (PyCFunction)(void (*)(void))spread, METH_FASTCALL, "spread(x, move, most, preferred): places of (n, m)"},
+    {"spread", (PyCFunction)(void (*)(void))spread, METH_FASTCALL,
+     "spread(x, move, most, preferred): places of x (n, m)"},
     {NULL, NULL, 0, NULL},
 };

@@ -1,6 +1,7 @@
 /* Curves of configurations as functions of a place on each, and their pieces within the joint limits.
 
-   Python's `track` and `arcs` are the reference, and say what is derived how. One curve at a time; comes after module.h.
+   Python's `track` and `arcs` are the reference, and say what is derived how. One curve at a time.
+   Comes after module.h.
 */
 
 #include <math.h>
@@ -132,7 +133,7 @@ typedef struct {
     double *to[AT_A_TIME];
 } Waiting;
 
-/* Make exact what waits; what of it closes, within `farthest` of where it was, is put where it belongs. */
+/* Make exact what waits, and put it where it belongs. */
 static void made_exact(const Track *t, Waiting *w) {
     lanes.corrected(t->chain, w->T, w->normals, 1, w->most, w->x, w->count, t->size, TRACK_ROUNDING, TRACK_CROSSING,
                     w->off, w->J);
@@ -512,7 +513,8 @@ static void put_on_limit(const Track *t, double *x) {
 }
 
 /* A piece from `first` to `last`: its row in `pieces`, and its configurations in `points`. */
-static int put_piece(const Track *t, int number, const Run *run, double first, double last, Rows *pieces, Rows *points) {
+static int put_piece(const Track *t, int number, const Run *run, double first, double last, Rows *pieces,
+                     Rows *points) {
     int whole = t->closed && last - first >= (double)t->last - ARC_ROUND, n = t->n;
     ptrdiff_t begun = points->used;
     double *row = new_row(pieces), from, to;
