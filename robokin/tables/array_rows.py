@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.errors import InputError, counted
+from robokin.errors import InputError, counted, shown
 
 ARRAY_ROWS = 8192
 """Rows of an array read at once."""
@@ -20,6 +20,9 @@ READ = 1 << 22
 
 MAX_HEADER = 10_000
 """Bytes of a header, as numpy limits it, but before it is read."""
+
+MAX_REASON = 100
+"""Characters of a reason why a header is none: numpy's repeat the header."""
 
 VERSIONS = ((1, 0), (2, 0), (3, 0))
 """Those of the format that there are."""
@@ -48,13 +51,19 @@ def array_header(stream: Any, name: str, expected: str) -> tuple[tuple[int, ...]
     except (OSError, KeyboardInterrupt):
         raise
     except Exception as error:  # a header is Python text, and what is none fails in many ways
-        reason = str(error).partition("\n")[0]
-        raise InputError(f"{name}: this is no .npy file ({reason}), {expected}") from None
+        raise InputError(f"{name}: this is no .npy file ({reason_of(error)}), {expected}") from None
     if dtype.kind not in "fiu":
-        raise InputError(f"{name}: found values of type {dtype}, {expected}")
+        raise InputError(f"{name}: found values of type {shown(str(dtype))}, {expected}")
     if any(isinstance(count, bool) or count < 0 for count in shape):
-        raise InputError(f"{name}: found an array of shape {shape}, {expected}")
+        raise InputError(f"{name}: found an array of shape {shown(str(shape))}, {expected}")
     return shape, fortran, dtype
+
+
+def reason_of(error: Exception) -> str:
+    """Why a header is none, by numpy's error: short, and the same in each run."""
+    if "ast." in str(error):  # Python's words for an expression tell where it is in memory
+        return "its header holds more than plain values"
+    return shown(str(error).partition("\n")[0], MAX_REASON) or "its header cannot be read"
 
 
 class ArrayReader:

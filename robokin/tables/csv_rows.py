@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from struct import error as PackingError
 from struct import pack_into
 from typing import IO
 
@@ -194,7 +195,7 @@ class CsvReader(RecordReader):
             width = self.width
         try:
             rows = numbers_of(block, width)
-        except (ValueError, TypeError, OverflowError):
+        except (ValueError, TypeError, OverflowError, PackingError):
             return None
         if not np.isfinite(rows).all():
             return None

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from robokin.arrays import Array
-from robokin.errors import InputError
+from robokin.errors import InputError, shown
 from robokin.files import HeededStream, open_input, wait_for
 from robokin.tables.arrow_library import ENDINGS as ARROW_ENDINGS
 from robokin.tables.arrow_library import kind_of_start
@@ -98,7 +98,7 @@ def _array_rows(stream: Any, name: str, wanted: Wanted) -> Iterator[Array]:
     if width == 1 and len(shape) == 1:
         shape = (*shape, 1)
     if shape[-1:] != (width,) or len(shape) > 3:
-        raise InputError(f"{name}: found an array of shape {shape}, {expected}")
+        raise InputError(f"{name}: found an array of shape {shown(str(shape))}, {expected}")
     rows, inner = (1, shape) if len(shape) == 1 else (shape[0], shape[1:])
     if len(shape) == 3 and not shape[1]:
         rows = 0

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robokin.arrays import Array
-from robokin.errors import InputError
+from robokin.errors import InputError, shown
 from robokin.files import open_input
 from robokin.formats.printed_matrices import pose_from_matrix
 from robokin.tables.array_rows import ArrayReader, array_header
@@ -113,14 +113,14 @@ class Targets:
         shape, fortran, dtype = array_header(stream, name, shapes)
         inner = shape[1:] if len(shape) == 3 or (len(shape) == 2 and shape != (4, 4)) else shape
         if inner not in ((4, 4), (16,), (7,), (6,), (3,), *flat):
-            raise InputError(f"{name}: found an array of shape {shape}, {shapes}")
+            raise InputError(f"{name}: found an array of shape {shown(str(shape))}, {shapes}")
         width = math.prod(inner)
         try:
             way = WAYS["matrix"] if inner == (4, 4) else PoseColumns(self.units, self.kind, self.plane).bare(width)
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
         if len(way.columns) != width:
-            raise InputError(f"{name}: found an array of shape {shape}, expected rows of {', '.join(way.names)}")
+            raise InputError(f"{name}: found an array of shape {shown(str(shape))}, expected rows of {', '.join(way.names)}")
         self.task = "position" if way.kind in PLACES else "pose"
         first = 1
         for rows in ArrayReader(stream, name, 1 if inner == shape else shape[0], inner, dtype, fortran).blocks():
