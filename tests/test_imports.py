@@ -14,7 +14,7 @@ import robokin
 
 PACKAGE = Path(robokin.__file__).parent
 ORDER = [
-    "errors", "arrays", "expected", "unfinished_work", "files", "units", "number_text", "brief",
+    "errors", "arrays", "expected", "unfinished_work", "files", "json_text", "units", "number_text", "brief",
     "rotation_entries", "spatial", "model", "kernel", "jobs", "assembly", "kinematics", "formats", "tables", "inverse",
     "workspace", "mobility", "derivation", "grading", "pictures", "records", "reports", "quick", "drawings",
     "symbol_matrices", "question_sheets", "documents", "dataframes", "table_view", "notebook", "cli",
@@ -29,8 +29,8 @@ ANSWERS = ("grading", "answers")
 handed what it has read, or a function that reads it within the answer's budget."""
 
 CALCULATING = [
-    "errors", "arrays", "expected", "units", "number_text", "brief", "rotation_entries", "spatial", "model",
-    "kernel", "jobs", "assembly", "kinematics", "inverse", "workspace", "mobility", "derivation", "grading",
+    "errors", "arrays", "expected", "json_text", "units", "number_text", "brief", "rotation_entries", "spatial",
+    "model", "kernel", "jobs", "assembly", "kinematics", "inverse", "workspace", "mobility", "derivation", "grading",
 ]  # fmt: skip
 HOMES = {
     "yaml": "formats", "typer": "cli", "rich": "reports", "matplotlib": "pictures", "PIL": "pictures",

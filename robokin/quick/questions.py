@@ -9,6 +9,7 @@ from math import isfinite
 from typing import Any
 
 from robokin.errors import InputError, shown
+from robokin.json_text import finite, value_in
 
 LONGEST_LINE = 1 << 20
 """Bytes of a line that is read; a longer one is refused."""
@@ -53,17 +54,15 @@ class AskedLine:
 
     def _take(self, text: str) -> None:
         try:
-            asked = json.loads(text, parse_constant=_refused)
+            asked = value_in(text)
+        except InputError:
+            raise
         except (ValueError, RecursionError) as error:
             at = f" at column {error.colno}" if isinstance(error, json.JSONDecodeError) else ""
             raise InputError(f"found no JSON{at}, expected an object, or the words of a command") from None
         if "id" in asked:
-            self.numbered, self.id = True, asked["id"]
+            self.numbered, self.id = True, finite(asked["id"])
         self.words = [*_question_words(asked)]
-
-
-def _refused(word: str) -> Any:
-    raise ValueError(f"{word} is no JSON")
 
 
 def _words(text: str) -> list[str]:

@@ -7,9 +7,8 @@ that knows the number of each line.
 from __future__ import annotations
 
 import re
+import struct
 from collections.abc import Iterator, Sequence
-from struct import error as PackingError
-from struct import pack_into
 from typing import IO
 
 import numpy as np
@@ -195,7 +194,7 @@ class CsvReader(RecordReader):
             width = self.width
         try:
             rows = numbers_of(block, width)
-        except (ValueError, TypeError, OverflowError, PackingError):
+        except (ValueError, TypeError, OverflowError, struct.error):
             return None
         if not np.isfinite(rows).all():
             return None
@@ -274,7 +273,7 @@ def numbers_of(block: bytes, width: int) -> Array:
     if not numbers:
         raise ValueError("nothing but white space")
     rows = np.empty((len(numbers) // width, width))
-    pack_into(f"{rows.size}d", rows.data, 0, *numbers)
+    struct.pack_into(f"{rows.size}d", rows.data, 0, *numbers)
     if from_json and not rows.all() and WHOLE_MINUS_ZERO.search(block):
         raise ValueError("JSON has no sign for a whole number that is 0")
     return rows

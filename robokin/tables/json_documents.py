@@ -7,6 +7,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from robokin.errors import InputError
+from robokin.json_text import DECODER, value_in
 from robokin.tables.text_source import MAX_ROW, Say, TextSource
 
 WHITE = re.compile(r"[ \t\r\n]*")
@@ -23,7 +25,6 @@ class DocumentReader(TextSource):
     def __init__(self, stream: Any, name: str, expected: str, say: Say) -> None:
         super().__init__(stream, name, say)
         self.expected = expected
-        self.decoder = json.JSONDecoder()
 
     def documents(self) -> Iterator[list[Numbered]]:
         """The documents of each block of lines."""
@@ -53,7 +54,9 @@ class DocumentReader(TextSource):
 
     def _document(self, line: str) -> Any:
         try:
-            return json.loads(line)
+            return value_in(line)
+        except InputError as error:
+            raise self.error(self.line, str(error)) from None
         except (ValueError, RecursionError) as error:
             raise self._no_json(self.line, error) from None
 
@@ -77,7 +80,9 @@ class DocumentReader(TextSource):
                     place, done = start + 1, True
                     continue
                 try:
-                    document, place = self.decoder.raw_decode(text, start)
+                    document, place = DECODER.raw_decode(text, start)
+                except InputError as error:
+                    raise self.error(self.line, str(error)) from None
                 except (ValueError, RecursionError) as error:
                     failure, place = error, start
                     continue

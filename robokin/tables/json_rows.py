@@ -11,6 +11,7 @@ import numpy as np
 
 from robokin.arrays import Array
 from robokin.errors import ExpressionError, InputError, counted, or_list, shown
+from robokin.json_text import finite
 from robokin.tables.carried import ID, Carried, given_back
 from robokin.tables.json_documents import DocumentReader
 from robokin.tables.number_cells import number_in
@@ -136,7 +137,7 @@ class Passing:
             self.known |= {*new}
             self.carried.say(f"the key '{shown(new[0])}' is left out, since the first document has none of that name")
         if self.passed:
-            self.carried.put([[more.get(name) for name in self.passed]] * count)
+            self.carried.put([[finite(more.get(name)) for name in self.passed]] * count)
 
 
 def _written(name: str, document: dict[str, Any]) -> bool:

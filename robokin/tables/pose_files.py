@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import io
-import json
 
 from robokin.arrays import Array
 from robokin.errors import InputError
 from robokin.files import open_input, read_up_to
 from robokin.formats.printed_matrices import pose_from_matrix
+from robokin.json_text import value_in
 from robokin.tables.near_targets import near_enough
 from robokin.tables.target_rows import one_pose, pose_of
 from robokin.tables.text_source import Say
@@ -22,7 +22,9 @@ MOST_OF_A_MATRIX = 1 << 20
 def pose_in_json(text: str, name: str, units: Units) -> tuple[Array, str]:
     """The pose (4, 4) [m] of a JSON document, and a note or "". Raises InputError, ValueError for no pose."""
     try:
-        document = json.loads(text)
+        document = value_in(text)
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
     except (ValueError, RecursionError):
         raise InputError(f"{name}: this is not JSON, expected [[…], […], […], […]]") from None
     T, task, note = pose_of(document, units)

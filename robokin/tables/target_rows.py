@@ -120,7 +120,9 @@ class Targets:
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
         if len(way.columns) != width:
-            raise InputError(f"{name}: found an array of shape {shown(str(shape))}, expected rows of {', '.join(way.names)}")
+            raise InputError(
+                f"{name}: found an array of shape {shown(str(shape))}, expected rows of {', '.join(way.names)}"
+            )
         self.task = "position" if way.kind in PLACES else "pose"
         first = 1
         for rows in ArrayReader(stream, name, 1 if inner == shape else shape[0], inner, dtype, fortran).blocks():

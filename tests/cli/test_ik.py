@@ -593,6 +593,7 @@ WRONG = {
     "a great integer": (["--matrix", f"[[1,0,0,1{'0' * 400}],[0,1,0,2],[0,0,1,3],[0,0,0,1]]"], ["--matrix"]),
     "words in a matrix": (["--matrix", '[["a"]]'], ["--matrix", "numbers"]),
     "no JSON": (["--matrix", "[[1,0"], ["--matrix", "not JSON"]),
+    "a key twice": (["--matrix", '{"matrix": [], "matrix": []}'], ["the key 'matrix' twice", "expected it once"]),
     "no such file": (["--matrix", "none.json"], ["none.json", "no such file"]),
     "a wrong unit": ([*ARGUMENTS, "--length", "km"], ["--length", "km"]),
     "max 0": ([*ARGUMENTS, "--max", "0"], ["--max", "1 or more"]),

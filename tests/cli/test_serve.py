@@ -152,7 +152,7 @@ WRONG = {
     "fk / --q 1": ("found a directory",),
     '{"command": "fk"': ("found no JSON at column",),
     '{"command": "fk"} x': ("found no JSON",),
-    '{"id": NaN, "command": "fk"}': ("found no JSON",),
+    '{"id": NaN, "command": "fk"}': ("found NaN, expected a finite number",),
     '{"command": "fk", "robot": "puma560", "q": [1e999,0,0,0,0,0]}': ("q: found Infinity",),
     '{"command": 7}': ("a command is missing",),
     '{"command": "fk", "robot": {}}': ("arguments: found {}",),
@@ -163,6 +163,10 @@ WRONG = {
     '{"words": "fk"}': ("words: expected a list",),
     '{"words": ["fk"], "robot": "puma560"}': ("found 'robot' beside words",),
     '{"command": "fk", "robot": "--help", "q": "home"}': ("no robot or mechanism named '--help'",),
+    '{"command": "fk", "robot": "puma560", "q": "home", "q": "ready"}': ("found the key 'q' twice",),
+    '{"id": {"a": 1, "a": 2}, "words": ["list"]}': ("found the key 'a' twice",),
+    '{"id": 1e999, "words": ["list"]}': ("found a number that is too large",),
+    '{"id": [{"a": [-1e999]}], "command": "fk"}': ("found a number that is too large",),
     "[1]": ("there is no command '[1]'",),
 }
 

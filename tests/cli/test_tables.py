@@ -510,7 +510,10 @@ BAD_ARRAYS = {
     "a header that is code": (header("__import__('os').system('true')") + FULL, "no .npy file"),
     "a header that adds": (header(described("(1, 1 + 1)")) + FULL, "header holds more than plain values)"),
     "a header of one word": (header("'" + "x" * 9000 + "'") + FULL, "not a dictionary: 'xxx", "...), expected"),
-    "a type of many names": (header(described("(2, 2)", repr([(f"a{i}", "<f8") for i in range(400)]))), "..., expected"),
+    "a type of many names": (
+        header(described("(2, 2)", repr([(f"a{i}", "<f8") for i in range(400)]))),
+        "..., expected",
+    ),
     "a shape of many counts": (header(described(str((0,) * 2000))), "shape (0, 0,", "..., expected"),
     "an odd escape": (header("{'descr': '\\d'}") + FULL, "no .npy file"),
     "nothing": (b"\x93NUMPY", "no .npy file"),

@@ -7,6 +7,7 @@ from typing import Any
 
 from robokin.errors import InputError
 from robokin.files import open_input, read_up_to
+from robokin.json_text import value_in
 
 LARGEST = 1 << 30
 """Bytes of a file of marks."""
@@ -20,9 +21,11 @@ def read_marks(source: str) -> list[dict[str, Any]]:
     try:
         text = data.decode("utf-8")
         try:
-            documents = [json.loads(text)]
-        except ValueError:
-            documents = [json.loads(line) for line in text.splitlines() if line.strip()]
+            documents = [value_in(text)]
+        except json.JSONDecodeError:
+            documents = [value_in(line) for line in text.splitlines() if line.strip()]
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
     except (ValueError, RecursionError):
         raise InputError(f"{name}: found no JSON, {expected}") from None
     marks: list[dict[str, Any]] = []

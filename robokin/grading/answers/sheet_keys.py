@@ -5,7 +5,6 @@ The right answers in the folder are for eyes: marks are worked out anew from the
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ from robokin.grading.questions.count_exercise import CountExercise, Pairs
 from robokin.grading.questions.exercise import Exercise, Given
 from robokin.grading.questions.sheets import KINDS, exercise_of
 from robokin.grading.tolerance import Tolerance
+from robokin.json_text import value_in
 from robokin.kinematics.structure import arm_size
 from robokin.model import Robot
 
@@ -61,7 +61,7 @@ def read_sheet_key(folder: str) -> SheetKey:
     place, text = _text(folder, QUESTIONS)
     for line, one in enumerate(text.splitlines(), start=1):
         try:
-            record = json.loads(one)
+            record = value_in(one)
             at = str(record["student"]), str(record["id"])
             known = at[0] in students and at[1] in exercises and at not in numbers
             numbers[at] = dict(record["given"])
@@ -87,7 +87,7 @@ def _text(folder: str, name: str) -> tuple[str, str]:
 def _json(folder: str, name: str) -> tuple[str, Any]:
     place, text = _text(folder, name)
     try:
-        return place, json.loads(text)
+        return place, value_in(text)
     except (ValueError, RecursionError) as error:
         raise InputError(f"{place}: {error}, expected JSON") from None
 
