@@ -29,3 +29,17 @@ def read_only(values: ArrayLike) -> Array:
     array = np.array(values, dtype=np.float64)
     array.flags.writeable = False
     return array
+
+
+def combined(values: Array, S: Array) -> Array:
+    """values @ S, (..., m) by (m, n), each sum in the order of its terms: a row among others has the digits that it has
+    alone, which those of BLAS have not."""
+    if values.ndim == 1:
+        made = [0.0] * S.shape[1]
+        for value, row in zip(values.tolist(), S.tolist(), strict=True):
+            made = [known + value * factor for known, factor in zip(made, row, strict=True)]
+        return np.array(made)
+    sums = np.zeros((*values.shape[:-1], S.shape[1]))
+    for place, row in enumerate(S):
+        sums += values[..., place, None] * row
+    return sums

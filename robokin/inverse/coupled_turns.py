@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from robokin.arrays import Array, Flags, Index
+from robokin.arrays import Array, Flags, Index, combined
 from robokin.errors import InputError
 from robokin.inverse.solutions import Arc
 from robokin.inverse.verify import within_limits, wrapped
@@ -114,11 +114,11 @@ def _of_group(
     low, high = tolerated(searched)
     q = q[np.all((q >= low) & (q <= high), axis=1)]
     if limits:
-        q = q[within(own, q @ S.T + o)]
+        q = q[within(own, combined(q, S.T) + o)]
     if not len(q):
         return [], False
     rest = np.max(np.abs(q - near), axis=1)
-    outside = ~_inside(box, own, q, q @ S.T + o)
+    outside = ~_inside(box, own, q, combined(q, S.T) + o)
     keep = np.lexsort((rest, outside))
     chosen: list[Array] = []
     for i in keep.tolist():
@@ -228,7 +228,7 @@ def _shifts(robot: CoupledRobot, u: Array) -> list[Array]:
         moved = []
         for turn in grid:
             q = points + turn
-            if _inside(robot.limits[variables], own, q, q @ S.T + drive.offsets[rows]).any():
+            if _inside(robot.limits[variables], own, q, combined(q, S.T) + drive.offsets[rows]).any():
                 whole = np.zeros(robot.n)
                 whole[variables] = turn
                 moved.append(whole)

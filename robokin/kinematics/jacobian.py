@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robokin.arrays import Array
+from robokin.arrays import Array, combined
 from robokin.expected import expect_choice
 from robokin.jobs.shared_rows import by_threads
 from robokin.kernel.chain import chain_of
@@ -51,7 +51,7 @@ def jacobian(robot: Robot, q: ArrayLike, frame: Literal["base", "tool"] = "base"
     elif J is None:
         chain = chain_of(moving)
         J = by_threads(lambda part, out: fill_jacobians(chain, part, frame, out), q, (6, moving.n), SHARE, cores)
-    return J @ robot.drive.S if isinstance(robot, CoupledRobot) else J
+    return combined(J, robot.drive.S) if isinstance(robot, CoupledRobot) else J
 
 
 def _at_one(robot: Robot, q: Array, frame: str) -> Array | None:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robokin.arrays import Array, Index
+from robokin.arrays import Array, Index, combined
 from robokin.kernel.columns import ChainProgram, Constant
 from robokin.kernel.facts import fact
 from robokin.kernel.frames import run
@@ -30,7 +30,7 @@ def tip_poses(tree: Tree, q: ArrayLike) -> Array:
     T = np.empty((len(rows), len(tree.tips), 4, 4))
     for place, (program, variables, S) in enumerate(_tip_programs(tree)):
         own = rows[:, variables]
-        T[:, place] = run(program, own if S is None else own @ S.T)[:, 0]
+        T[:, place] = run(program, own if S is None else combined(own, S.T))[:, 0]
     return T.reshape(*q.shape[:-1], len(tree.tips), 4, 4)
 
 

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robokin.arrays import Array, Flags, read_only
+from robokin.arrays import Array, Flags, combined, read_only
 from robokin.brief import Brief
 from robokin.errors import InputError, shown
 from robokin.model.graph import NO_LIMITS, Coupling, Graph
@@ -50,7 +50,7 @@ class Drive(Brief):
 
     def motions(self, u: Array) -> Array:
         """The joints' values v (..., m) for variables u (..., n) [rad | m]."""
-        return np.asarray(u @ self.S.T + self.offsets)
+        return combined(np.asarray(u), self.S.T) + self.offsets
 
     @cached_property
     def invertible(self) -> bool:
@@ -69,7 +69,7 @@ class Drive(Brief):
 
     def variables_for(self, v: Array) -> Array:
         """The variables u (..., n) for which the joints have the values v (..., m), where S is invertible."""
-        return np.asarray((v - self.offsets) @ self.inverse.T)
+        return combined(np.asarray(v - self.offsets), self.inverse.T)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from robokin.arrays import Array, Flags, read_only
+from robokin.arrays import Array, Flags, combined, read_only
 from robokin.brief import Described
 from robokin.errors import InputError, Note, shown
 from robokin.expected import expect_kind, expect_numbers
@@ -125,7 +125,7 @@ class Tree(Described):
         """
         values = self.values_of(q)
         S, o = self.graph.value_map
-        return within(self.limits, values) & within(self.graph.value_limits, values @ S.T + o)
+        return within(self.limits, values) & within(self.graph.value_limits, combined(values, S.T) + o)
 
     def values_of(self, q: ArrayLike) -> Array:
         """q: (..., n) [rad | m] as an array (..., n) of floats.

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from robokin.arrays import Array
+from robokin.arrays import Array, combined
 from robokin.errors import InputError
 from robokin.kinematics.forward import forward_kinematics, row_frames
 from robokin.kinematics.tips import tip_poses
@@ -105,7 +105,7 @@ class PoseMaker:
         bounded = np.isfinite(limits).any(axis=1) & (np.count_nonzero(S, axis=1) > 1)
         for i in np.flatnonzero(bounded).tolist():
             name, turns = moved[i]
-            yield name, float(S[i] @ q + o[i]), limits[i], turns
+            yield name, float(combined(q, S[i, :, None])[0] + o[i]), limits[i], turns
 
     def _outside(self, value: float, limits: Array, turns: bool) -> str:
         """`= 200 deg is outside its limits -170 .. 170`, of a value and limits (2,) [rad | m]."""

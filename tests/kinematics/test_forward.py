@@ -14,6 +14,7 @@ from sweeps import sweep
 import robokin
 from robokin.errors import InputError
 from robokin.kernel.columns import BLOCK, cos_sin_of_halves
+from robokin.kernel.native_kernel import native
 from robokin.kinematics.forward import joint_frames, row_frames
 from robokin.model import Joint, JointType, Robot
 
@@ -179,3 +180,23 @@ def test_a_batch_that_threads_share_has_the_same_numbers(name, m, monkeypatch, r
 def test_what_is_no_number_of_cores_is_refused(ask, cores):
     with pytest.raises(robokin.InputError, match="cores"):
         ask(robokin.load("puma560"), np.zeros(6), cores=cores)
+
+
+@pytest.mark.skipif(native is None, reason="Python's kernel may round a block otherwise than one configuration")
+def test_a_coupled_arm_alone_has_the_digits_that_it_has_among_others(tmp_path, rng):
+    """BLAS sums one row in another order than many."""
+    rows = "".join(f"  - {{name: j{i}, type: R, d: 0.{i}, a: 0.{7 - i}, alpha: {90 * (i % 2)}}}\n" for i in range(1, 7))
+    couplings = "  - {joint: j5, adds: {j6: 2/3, j1: 1/3, j3: 0.7, j2: -0.1}}\n  - {joint: j2, adds: j4, ratio: 1/7}\n"
+    path = tmp_path / "coupled.yaml"
+    path.write_text(f"robokin: 1\nname: x\nunits: {{length: m, angle: rad}}\njoints:\n{rows}couplings:\n{couplings}")
+    for robot, poses in (
+        (robokin.load(path), robokin.forward_kinematics),
+        (robokin.load_tree("baxter"), robokin.tip_poses),
+    ):
+        q = rng.uniform(-3.0, 3.0, (40, robot.n))
+        many = poses(robot, np.tile(q, (50, 1)))[:40]
+        assert np.array_equal(many, [poses(robot, one) for one in q])
+        if robot.name == "x":
+            J = robokin.jacobian(robot, np.tile(q, (50, 1)))[:40]
+            assert np.array_equal(J, [robokin.jacobian(robot, one) for one in q])
+            assert np.array_equal(robokin.link_frames(robot, q), [robokin.link_frames(robot, one) for one in q])
