@@ -33,6 +33,26 @@ class _Share:
     targets: Index | slice
     block: TargetBlock
 
+    def fill(self, held: Array | None, *tables: NDArray[Any]) -> None:
+        """Put what is listed into its rows of tables for all targets (`TargetBlock.pad`).
+
+        held: (n,) of joints that are held in these tables their values, NaN for the others, or None.
+        """
+        if held is None and isinstance(self.targets, slice):
+            q, position, angle, inside = (table[self.targets] for table in tables)
+            self.block.pad(q, position, angle, inside)
+            return
+        own = [np.empty((len(self.block.T), *table.shape[1:]), dtype=table.dtype) for table in tables]
+        q, position, angle, inside = own
+        if held is None:
+            self.block.pad(q, position, angle, inside)
+        else:
+            values = np.empty((*q.shape[:2], int(np.isnan(held).sum())))
+            self.block.pad(values, position, angle, inside)
+            own[0] = with_held_values(values, held)
+        for table, part in zip(tables, own, strict=True):
+            table[self.targets] = part
+
     def place(self, i: int) -> tuple[TargetBlock, int] | None:
         """The block that answers target i, and the target's number in it; None if it is another's."""
         if isinstance(self.targets, slice):
@@ -47,13 +67,14 @@ def answered_batch(request: Request, T: Array, cores: int | None) -> BatchResult
     Where the native kernel has part in them held joints (`Request.pattern`) are among their joint values.
     """
     kind = _native_kind(request)
-    known = None if kind is None else NativeAnswers(kind, T, BLOCK, cores)
+    # What is shared, or answered once more for a single answer, are smaller blocks.
+    known = None if kind is None else NativeAnswers(kind, T, BLOCK // 2, cores)
     left = None if known is None else np.flatnonzero(~known.plain)
     others = T if left is None else T[left]
+    starts = range(0, len(others), BLOCK if cores == 1 else BLOCK // 2)
+    blocks = [others[start : start + starts.step] for start in starts]
     parts: list[_Share] = []
-    for start, block in zip(
-        _starts(others), ordered_map(partial(TargetBlock, request), _blocks(others), cores), strict=True
-    ):
+    for start, block in zip(starts, ordered_map(partial(TargetBlock, request), blocks, cores), strict=True):
         whole = slice(start, start + len(block.T))
         parts.append(_Share(whole if left is None else left[whole], block))
     for part in parts:
@@ -68,14 +89,6 @@ def _native_kind(request: Request) -> NativeKind | None:
     return None if swivel_request(request) is None else swivel_kind(request)
 
 
-def _starts(T: Array) -> range:
-    return range(0, len(T), BLOCK)
-
-
-def _blocks(T: Array) -> list[Array]:
-    return [T[start : start + BLOCK] for start in _starts(T)]
-
-
 def _batch(request: Request, m: int, known: NativeAnswers | None, parts: list[_Share]) -> BatchResult:
     """The answers of the native kernel and of blocks for m targets."""
     counts = np.zeros(m, dtype=np.intp) if known is None else known.count.copy()
@@ -85,9 +98,7 @@ def _batch(request: Request, m: int, known: NativeAnswers | None, parts: list[_S
     held = None if known is None else known.kind.pattern
     q, position, angle, inside = empty_tables(m, most, request.robot.n)[-4:] if known is None else known.listed(most)
     for part in parts:
-        at = part.targets
-        values, position[at], angle[at], inside[at] = part.block.padded(most)
-        q[at] = values if held is None else with_held_values(values, held)
+        part.fill(held, q, position, angle, inside)
 
     def place(i: int) -> tuple[TargetBlock, int]:
         found = None if known is None else known.place(i)

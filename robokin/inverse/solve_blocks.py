@@ -15,7 +15,7 @@ from robokin.inverse.window_form import window_form
 from robokin.kernel.native_kernel import native
 from robokin.spatial import invert, rotation_transform
 
-BLOCK = 4000
+BLOCK = 8000
 """Targets at a time: the interpreter's share is spread thin, and the columns of a closed form stay in cache."""
 
 KEPT = 2**24

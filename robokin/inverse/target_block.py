@@ -126,6 +126,8 @@ class TargetBlock:
             # Where nothing vouches for there being none, what comes nearest within the limits may close.
             searches = [closing_nearest]
         for search_for in searches:
+            if (self.claims.basis > 0).all():
+                break
             answered = (np.bincount(found.index[inside], minlength=len(T)) > 0) | self.beyond | (self.claims.basis > 0)
             missing = np.flatnonzero(~answered)
             if len(missing):
@@ -202,22 +204,17 @@ class TargetBlock:
         q[:, moving] = found.q
         return Found(found.index, q, found.position, found.angle)
 
-    def padded(self, most: int) -> tuple[Array, Array, Array, Flags]:
-        """What is listed in tables of `most` rows a target: joint values (m, most, n), distances, angles, inside.
+    def pad(self, q: Array, position: Array, angle: Array, inside: Flags) -> None:
+        """Put what is listed into tables: joint values (m, most, n), distances, angles, inside, (m, most) each.
 
-        (m, most) each; rows beyond a target's number are NaN and not inside.
+        Rows beyond a target's number are NaN and not inside.
         """
-        found, m = self.found, len(self.T)
-        listed = np.arange(most) < self.count[:, None]
-        if listed.all():
-            shape = m, most
-            q = found.q.reshape(*shape, found.q.shape[1])
-            return q, found.position.reshape(shape), found.angle.reshape(shape), self.inside.reshape(shape)
-        q = np.full((m, most, found.q.shape[1]), np.nan)
-        position, angle = np.full((m, most), np.nan), np.full((m, most), np.nan)
-        inside = np.zeros((m, most), dtype=bool)
-        q[listed], position[listed], angle[listed], inside[listed] = found.q, found.position, found.angle, self.inside
-        return q, position, angle, inside
+        found = self.found
+        rows = np.flatnonzero(np.arange(q.shape[1]) < self.count[:, None])
+        for table, values in ((q, found.q), (position, found.position), (angle, found.angle), (inside, self.inside)):
+            if len(rows) < inside.size:
+                table.fill(np.nan if table.dtype == np.float64 else False)
+            table.reshape(inside.size, *table.shape[2:])[rows] = values
 
     @cached_property
     def names(self) -> list[str]:

@@ -75,7 +75,8 @@ def refined_by_columns(
             far = _farness(loop, q)
             for step in range(steps + 1):
                 axes, error = _follow(loop, L, q)
-                error[:3] /= far
+                if len(slides):
+                    error[:3] /= far
                 squares = error * error
                 v, w = squares[:3].sum(axis=0), squares[3:].sum(axis=0)
                 open_ = v + w > DONE * DONE
@@ -90,17 +91,26 @@ def refined_by_columns(
                     axes, error = axes[..., open_], error[:, open_]
                     open_ = open_[open_]
                 S = twists(axes, loop.revolute)
-                S[:, :3] /= far
-                S[slides] *= far
-                dq = _step(S, error)
-                if (long := far > LONG).any():
-                    damping = np.einsum("cs,cs->s", error[:, long], error[:, long])
-                    dx = singular_step(S[..., long].transpose(2, 1, 0), error[:, long].T, damping)
-                    dq[:, long] = -limited(dx, STEP).T
-                dq[slides] *= far
+                dq = _step_of_slides(S, error, slides, far) if len(slides) else _step(S, error)
                 # What has arrived stays, so that it does not depend on the others.
                 q += dq * open_
     return refined, position, angle
+
+
+def _step_of_slides(S: Array, error: Array, slides: Index, far: Array) -> Array:
+    """`_step` of a loop some of whose joints slide: lengths of the step are in units of far (s,), and it is in sizes.
+
+    error: (6, s) with its lengths in these units.
+    """
+    S[:, :3] /= far
+    S[slides] *= far
+    dq = _step(S, error)
+    if (long := far > LONG).any():
+        damping = np.einsum("cs,cs->s", error[:, long], error[:, long])
+        dx = singular_step(S[..., long].transpose(2, 1, 0), error[:, long].T, damping)
+        dq[:, long] = -limited(dx, STEP).T
+    dq[slides] *= far
+    return dq
 
 
 def _farness(loop: Loop, q: Array) -> Array:
@@ -149,5 +159,6 @@ def _step(S: Array, error: Array) -> Array:
     damping = np.einsum("cs,cs->s", error, error)
     for i in range(n):
         np.einsum("cs,jcs->js", S[i], S[i:], out=M[i, i:])
-        M[i, i] += damping + FLOOR * M[i, i]
+    diagonal = np.einsum("iis->is", M)
+    diagonal += damping + FLOOR * diagonal
     return -limited(solved(M, b)[0], STEP, axis=0)

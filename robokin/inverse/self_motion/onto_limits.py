@@ -11,13 +11,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from robokin.arrays import Array, Flags
+from robokin.arrays import Array, Flags, Index
 from robokin.inverse.analysis import Analysis
 from robokin.inverse.numeric.closing import DONE, EXACT_STEPS, newton_within
 from robokin.inverse.self_motion.pose_correction import corrected
 from robokin.inverse.self_motion.root_neighbours import NEIGHBOURS, UNRESOLVED
 from robokin.inverse.verify import Found, wrapped
-from robokin.inverse.window import least_singular_values
+from robokin.inverse.window import nearly_singular
 from robokin.kernel.residual import error_and_jacobian
 
 BESIDE = 1e-5
@@ -44,12 +44,13 @@ def onto_limits(analysis: Analysis, T: Array, found: Found, inside: Flags, limit
     chain, size = analysis.chain, analysis.size
     scale = np.where(chain.revolute, 1.0, size)
     moved = np.zeros(len(found), dtype=bool)
-    rows = np.flatnonzero(~inside)
+    rows = _beside(found.q, np.flatnonzero(~inside), chain.revolute, limits, scale)
+    if not len(rows):
+        return found, moved
     start = _turned_beside(found.q[rows], chain.revolute, limits)
     outside = np.max(np.abs(np.clip(start, *limits.T) - start) / scale, axis=1, initial=0.0)
-    beside = outside <= NEIGHBOURS
-    rows, start, outside = rows[beside], start[beside], outside[beside]
-    known_to = np.where(least_singular_values(chain, start, size) < UNRESOLVED, NEIGHBOURS, BESIDE)
+    unresolved = nearly_singular(chain, start, size, np.full(len(start), UNRESOLVED))
+    known_to = np.where(unresolved, NEIGHBOURS, BESIDE)
     beside = outside <= known_to
     rows, start, near = rows[beside], start[beside], np.maximum(known_to[beside], 10.0 * BESIDE)
     if not len(rows):
@@ -91,6 +92,27 @@ def _exact_beside(analysis: Analysis, T: Array, start: Array, limits: Array) -> 
     if len(open_):
         q[open_], error[open_] = newton_within(chain, T[open_], start[open_], size, limits, EXACT_STEPS)
     return q, error
+
+
+ROUGHLY = 1.1
+"""Times as much is let pass by what sorts out most of those that are far outside."""
+
+
+def _beside(q: Array, rows: Index, revolute: Flags, limits: Array, scale: Array) -> Index:
+    """Some rows of q (s, n) without those that no turn brings to within `NEIGHBOURS` of their limits (n, 2) everywhere.
+
+    Joint by joint: hardly any row is left after the first few. Some may be left that are farther outside.
+    """
+    for j, (low, high) in enumerate(limits):
+        values, near = q[rows, j], ROUGHLY * NEIGHBOURS * scale[j]
+        off = np.flatnonzero((values < low - near) | (values > high + near))
+        if revolute[j]:
+            for end in (low, high):
+                turns = (values[off] - end) / (2.0 * np.pi)
+                turns -= np.rint(turns)
+                off = off[~(np.abs(turns) <= ROUGHLY * NEIGHBOURS)] if np.isfinite(end) else off[:0]
+        rows = np.delete(rows, off)
+    return rows
 
 
 def _turned_beside(q: Array, revolute: Flags, limits: Array) -> Array:

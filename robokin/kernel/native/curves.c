@@ -189,11 +189,6 @@ static int put_passes(const Curves *c, const double *x, const double *ways, cons
     return good;
 }
 
-static PyObject *vector_of(npy_intp m, npy_intp width) {
-    const npy_intp shape[] = {m, width};
-    return PyArray_EMPTY(width ? 2 : 1, shape, NPY_DOUBLE, 0);
-}
-
 static PyObject *passes(PyObject *self, PyObject *const *args, Py_ssize_t count) {
     PyObject *copies[7] = {NULL, NULL, NULL, NULL, NULL, NULL, NULL}, *levels = NULL;
     Curves c;
@@ -214,7 +209,7 @@ static PyObject *passes(PyObject *self, PyObject *const *args, Py_ssize_t count)
             PyErr_SetString(PyExc_ValueError, "expected pairs of a curve and a configuration");
             pairs = NULL;
         }
-    levels = pairs ? vector_of(p, 0) : NULL;
+    levels = pairs ? new_numbers(p, 0) : NULL;
     if (!levels)
         goto end;
     double *to = PyArray_DATA((PyArrayObject *)levels);
@@ -272,7 +267,7 @@ static PyObject *pieces_within(PyObject *self, PyObject *const *args, Py_ssize_t
         PyErr_NoMemory();
         goto end;
     }
-    if (!(parts[0] = vector_of(pieces.used, 3)) || !(parts[1] = vector_of(points.used, c.n)))
+    if (!(parts[0] = new_numbers(pieces.used, 3)) || !(parts[1] = new_numbers(points.used, c.n)))
         goto end;
     if (pieces.used)
         memcpy(PyArray_DATA((PyArrayObject *)parts[0]), pieces.v, (size_t)(3 * pieces.used) * sizeof(double));
