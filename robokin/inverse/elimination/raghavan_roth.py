@@ -44,7 +44,6 @@ from robokin.arrays import Array, Complex, Index
 from robokin.inverse.elimination import fourteen_functions, pencil
 from robokin.inverse.elimination.fourteen_functions import X_PARTS, angle_of
 from robokin.inverse.elimination.loop import Candidates, ComplexCandidates, Loop
-from robokin.kernel.frames import joint_motion
 from robokin.spatial import invert, rotation_from_rpy, transform
 
 SPLITS = 12
@@ -238,10 +237,10 @@ class Elimination:
         squares, s = np.square(np.abs(products)), np.arange(len(x))
         q[1] = _ratio(products[s, :, np.argmax(squares.sum(axis=1), axis=1)], turns[1])
         q[2] = _ratio(products[s, np.argmax(squares.sum(axis=2), axis=1)], turns[2])
-        X = _of(M[5], index)
+        X = _columns_of(_of(M[5], index), q)
         for i in range(3):
-            X = X @ joint_motion(turns[i], q[i]) @ _of(M[i], index)
-        f, V = fourteen_functions.of_frames(X, self._free_turns), _of(V, index)
+            X = _times_link(_after_joint(X, turns[i], q[i]), _of(M[i], index))
+        f, V = fourteen_functions.of_frames(X.transpose(2, 1, 0), self._free_turns), _of(V, index)
         # Joint 5 leaves some functions alone: in these joint 4 is found, by least squares in (c, s) or (d, d²).
         B = V[:, self._left_alone]
         a, b, e = B[..., 1], B[..., 2], f[:, self._left_alone] - B[..., 0]
@@ -260,14 +259,15 @@ class Elimination:
             powers = q[4], q[4] * q[4]
         g = V[..., 0] + V[..., 1] * powers[0][:, None] + V[..., 2] * powers[1][:, None]
         q[5] = -fourteen_functions.moved(turns[5], self._free_turns, g, f)
-        Y = (
-            joint_motion(turns[5], -q[5])
-            @ _of(invert(M[4]), index)
-            @ joint_motion(turns[4], -q[4])
-            @ _of(invert(M[3]), index)
-        )
-        D = _inverse(X) @ Y
-        q[3] = angle_of(D[:, 0, 0] + D[:, 1, 1], D[:, 1, 0] - D[:, 0, 1], 2.0) if turns[3] else D[:, 2, 3]
+        Y = _columns_of(np.eye(4)[None], q)
+        for i in (5, 4):
+            Y = _times_link(_after_joint(Y, turns[i], -q[i]), _of(invert(M[i - 1]), index))
+        # Joint 3 turns or slides X to Y.
+        if turns[3]:
+            xx, yy, yx, xy = (np.einsum("rs,rs->s", X[i], Y[j]) for i, j in ((0, 0), (1, 1), (1, 0), (0, 1)))
+            q[3] = angle_of(xx + yy, yx - xy, 2.0)
+        else:
+            q[3] = np.einsum("rs,rs->s", X[2], Y[3] - X[3])
         return q
 
 
@@ -285,12 +285,32 @@ def _times_joint(joint: Array, V: Array) -> Array:
     return np.swapaxes(products, 1, 2).reshape(-1, 15, 3 * k)
 
 
-def _inverse(X: Array) -> Array:
-    """The inverses of rigid motions (s, 4, 4), real or complex."""
-    out = np.zeros_like(X)
-    out[:, :3, :3] = np.swapaxes(X[:, :3, :3], 1, 2)
-    out[:, :3, 3:] = -out[:, :3, :3] @ X[:, :3, 3:]
-    out[:, 3, 3] = 1.0
+def _columns_of(M: Array, q: NDArray[Any]) -> NDArray[Any]:
+    """Columns x, y, z, p (4, 3, s) of frames M, (1, 4, 4) or (s, 4, 4), real or complex as joint values q (6, s)."""
+    X = np.empty((4, 3, q.shape[1]), dtype=q.dtype)
+    X[:] = M[:, :3].transpose(2, 1, 0)
+    return X
+
+
+def _after_joint(X: NDArray[Any], turns: bool, q: NDArray[Any]) -> NDArray[Any]:
+    """X J for columns X (4, 3, s), overwritten, and a joint at q (s,)."""
+    if turns:
+        c, sine = np.cos(q), np.sin(q)
+        X[0], X[1] = X[0] * c + X[1] * sine, X[1] * c - X[0] * sine
+    else:
+        X[3] += q * X[2]
+    return X
+
+
+def _times_link(X: NDArray[Any], M: Array) -> NDArray[Any]:
+    """X M for columns X (4, 3, s) and a link, (1, 4, 4) or of each (s, 4, 4)."""
+    if len(M) == 1:
+        # Real and imaginary parts are two real columns: half the work of a complex product.
+        return np.asarray((M[0].T @ X.view(np.float64).reshape(4, -1)).view(X.dtype).reshape(X.shape))
+    out = np.empty_like(X)
+    for j, entries in enumerate(M.transpose(2, 1, 0)):
+        out[j] = X[0] * entries[0] + X[1] * entries[1] + X[2] * entries[2]
+    out[3] += X[3]
     return out
 
 
