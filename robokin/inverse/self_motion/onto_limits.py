@@ -101,7 +101,8 @@ ROUGHLY = 1.1
 def _beside(q: Array, rows: Index, revolute: Flags, limits: Array, scale: Array) -> Index:
     """Some rows of q (s, n) without those that no turn brings to within `NEIGHBOURS` of their limits (n, 2) everywhere.
 
-    Joint by joint: hardly any row is left after the first few. Some may be left that are farther outside.
+    What can be turned into its limits is (`within_limits`). Joint by joint: hardly any row is left after the first few.
+    Some may be left that are farther outside.
     """
     for j, (low, high) in enumerate(limits):
         values, near = q[rows, j], ROUGHLY * NEIGHBOURS * scale[j]
