@@ -12,8 +12,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robokin.arrays import Array, Index
 from robokin.inverse.batch_tables import NativeAnswers, NativeKind, empty_tables, with_held_values

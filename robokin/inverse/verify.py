@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -195,7 +196,7 @@ def told_by_tables(found: Found, revolute: Flags, size: float) -> tuple[Found, I
     filled = np.arange(int(counts.max())) < counts[:, None]
     full = bool(filled.all())
 
-    def table(values: Array, missing: float = np.inf) -> Array:
+    def table(values: NDArray[Any], missing: float = np.inf) -> NDArray[Any]:
         if full:
             return values[by_target].reshape(filled.shape)
         spread = np.full(filled.shape, missing, dtype=values.dtype)
@@ -264,7 +265,7 @@ NO_KEY = 2**53
 """Stands for what is missing: above every key."""
 
 
-def _ranked(keys: NDArray[np.int64], sums: Callable[[], Array]) -> Index:
+def _ranked(keys: NDArray[Any], sums: Callable[[], Array]) -> Index:
     """The columns of a table of keys in rising order, row by row; of equal keys the sums decide, a table as well.
 
     Next to a singular pose two solutions may be in one cell, and come in any order.
