@@ -243,6 +243,9 @@ def advanced(
 def shortest(A: Array, b: Array, zero: float, /) -> Array:
     """The shortest solutions (m, n) of A (m, r, n) dx = b (m, r), singular values up to `zero` left out."""
 
+def least_values(J: Array, /) -> Array:
+    """The least singular values (m,) of Jacobians (m, 6, n)."""
+
 def refined(loop: object, closing: Array, values: Array, steps: int, /) -> tuple[Array, Array]:
     """Values (m, 6) after steps on loops closed by (m, 4, 4), and what they lack (m, 2)."""
 
@@ -252,6 +255,44 @@ def complex_refined(loop: object, closing: Array, values: Array, steps: int, lon
 def tracked(loop: object, start: Array, target: Array, bend: Array, values: Array, /) -> tuple[Array, Array]:
     """Solutions (m, 12) followed from start to target, points of the homotopy (m, 14), and u, speed and whether the
     path is lost (m, 3); bend (m, 2).
+    """
+
+# Curves that were followed: curves.c.
+
+def passes(
+    chain: object,
+    size: float,
+    T: Array,
+    points: Array,
+    tangents: Array,
+    counts: Array,
+    x: Array,
+    ways: Array,
+    pairs: Array,
+    /,
+) -> Array:
+    """Whether curves at T (c, 4, 4), of so many points each, pass through configurations x (m, n), for pairs (p, 2)
+    of both: 0, 1, or 2 along the ways (m, n).
+    """
+
+def pieces_within(
+    chain: object,
+    size: float,
+    T: Array,
+    points: Array,
+    tangents: Array,
+    counts: Array,
+    limits: Array,
+    curves: Array,
+    /,
+) -> tuple[Array, Array]:
+    """The pieces of curves within limits (6, n), each its curve, whether it is whole, and its points' number (p, 3),
+    and these points (k, n); curves (c, 1 + 2 n): whether each is closed, its full turns, and which joints move.
+    """
+
+def spread(x: Array, move: Array, most: int, preferred: Array | None, /) -> Index:
+    """The places of `most` of configurations x (n, m), each the farthest from those before, the first of the least
+    `move` (m,); preferred (m,) is added to how far one is.
     """
 
 # Which solutions are told apart, and in which order they stand: told_apart.c.
