@@ -72,8 +72,12 @@ class SolutionRecords:
         return record
 
     def joints(self, q: Array) -> Any:
-        """Joint values (..., n) [rad | m] in the units; of held joints the digits that were asked for."""
+        """Joint values (..., n) [rad | m] in the units, as lists."""
+        return self.values(q).tolist()
+
+    def values(self, q: Array) -> Array:
+        """The same as an array; of held joints the digits that were asked for."""
         values = q / joint_factors(self.robot, self.units) + 0.0
         for joint, value in self.held.items():
             values[..., joint] = np.where(np.isnan(values[..., joint]), np.nan, value)
-        return values.tolist()
+        return values

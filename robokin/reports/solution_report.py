@@ -18,8 +18,9 @@ from robokin.model import Robot
 from robokin.records.envelope import envelope
 from robokin.records.solution_records import SolutionRecords
 from robokin.reports.answer_stream import SharedStream
+from robokin.reports.solution_rows import SolutionRows
 from robokin.tables.carried import Carried, nothing
-from robokin.tables.written_rows import csv_header, csv_records
+from robokin.tables.written_rows import csv_header
 from robokin.units import Units
 
 if TYPE_CHECKING:
@@ -143,46 +144,56 @@ class SolutionReport(SharedStream):
     def csv(self, blocks: Iterable[Array]) -> Iterator[bytes]:
         """A row a solution. Works on arrays: most of the time of a batch would else go into objects."""
         header = b"" if self.begun else csv_header(csv_columns(self.robot, self.following is not None))
-        for T, batch in self.batches(blocks):
-            listed = np.arange(batch.q.shape[1]) < batch.count[:, None]
-            solutions = zip(
-                self.records.joints(batch.q[listed]),
-                batch.branches(),
-                batch.within_limits[listed].tolist(),
-                (batch.position_error[listed] / self.records.units.metres).tolist(),
-                (batch.angle_error[listed] / self.records.units.radians).tolist(),
-                strict=True,
-            )
-            rows: list[list[Any]] = []
-            through: list[list[str]] = []
-            for i, count in enumerate(batch.count.tolist()):
-                self.count += 1
-                for k in range(1, count + 1):
-                    q, branch, *rest = next(solutions)
-                    rows.append([self.count, k, *q, _one_cell(branch), *rest, ""])
-                if not count:
-                    rows += self.exceptional(T[i], batch, i)
-                if self.following is not None:
-                    rows[len(through) :] = [[*row, self.following.jumped] for row in rows[len(through) :]]
-                through += [self.carried.cells()] * (len(rows) - len(through))
-            yield self.carried.before(header, csv_records(None, rows), through)
+        for count, rows in self.rows(blocks):
+            yield self.carried.before(header, b"") + rows.text(self.carried, count)
             header = b""
         yield self.carried.before(header, b"")
 
-    def exceptional(self, target: Array, batch: BatchResult, i: int) -> Iterator[list[Any]]:
-        """The rows of a target without an exact solution."""
-        reason = None
+    def arrow(self, kind: str, blocks: Iterable[Array], stream: IO[bytes]) -> int:
+        """The columns of the CSV; the number of rows. Text in between would take several times as long."""
+        from robokin.tables.arrow_writer import ArrowWriter, columns_of
+
+        def begun() -> ArrowWriter:
+            """A writer; what goes through is known when the first block is."""
+            columns = [*self.carried.names, *csv_columns(self.robot, self.following is not None)]
+            return ArrowWriter(stream, kind, columns_of(columns, self.carried), self.about)
+
+        writer = None
+        for count, rows in self.rows(blocks):
+            writer = writer or begun()
+            writer.columns(rows.columns(self.carried, count))
+        return (writer or begun()).close()
+
+    def rows(self, blocks: Iterable[Array]) -> Iterator[tuple[int, SolutionRows]]:
+        """How many targets a block has, and the rows of their solutions."""
+        units = self.records.units
+        for T, batch in self.batches(blocks):
+            first = self.count + 1
+            listed = np.arange(batch.q.shape[1]) < batch.count[:, None]
+            target, k = np.nonzero(listed)
+            errors = np.stack([batch.position_error[listed], batch.angle_error[listed]], axis=1)
+            solved = SolutionRows(
+                first, target + first, k + 1, self.records.values(batch.q[listed]), batch.branches(),
+                batch.within_limits[listed], errors / (units.metres, units.radians), [""] * len(k),
+                None if self.following is None else self.following.jumped,
+            )  # fmt: skip
+            unsolved = np.flatnonzero(batch.count == 0).tolist()
+            others = [row for i in unsolved for row in self.exceptional(T[i], batch, i, first + i)]
+            self.count += len(T)
+            yield len(T), SolutionRows.merged(solved, others)
+
+    def exceptional(self, target: Array, batch: BatchResult, i: int, number: int) -> Iterator[SolutionRows]:
+        """The rows of target i, which has a number, without an exact solution."""
         if self.tolerances == (None, None):
             reason = batch.reason(i)
         else:
             result = self.accepted(target, batch[i])
             reason = result.reason
-            for k, solution in enumerate(result.solutions, start=1):
-                q, branch, inside, position, angle, *_ = self.records.solution(solution).values()
-                yield [self.count, k, *q, _one_cell(branch), inside, position, angle, ""]
+            if result.solutions:
+                yield SolutionRows.of(number, result.solutions, self.records)
         if reason is not None:
             self.unreached += 1
-            yield [self.count, 0, *[""] * (self.robot.n + 4), reason]
+            yield SolutionRows.without(number, self.robot.n, reason)
 
     def npy(self, blocks: Iterable[Array], stream: IO[bytes]) -> None:
         """The solutions (m, k, n) in the units, padded with NaN; k is the greatest number of solutions.
@@ -228,11 +239,6 @@ class SolutionReport(SharedStream):
 
                 yield WorkedStepPage(self.explanation(target, result)).page()
         yield head
-
-
-def _one_cell(branch: str) -> str:
-    """A branch without commas, so that whoever splits a line at its commas finds the columns."""
-    return branch.replace(", ", " / ")
 
 
 def _listed(result: Result, n: int) -> Array:

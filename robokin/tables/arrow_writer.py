@@ -20,7 +20,7 @@ TYPES = {"number": "float64", "whole": "int64", "truth": "bool", "text": "string
 """Arrow's types, by what a column holds."""
 
 OWN_KINDS = {"target": "whole", "solution": "whole", "rank": "whole", "within_limits": "truth", "branch": "text",
-             "reason": "text"}  # fmt: skip
+             "reason": "text", "jump": "truth"}  # fmt: skip
 """What columns of answers hold that are no numbers with fractions."""
 
 
@@ -55,7 +55,7 @@ class ArrowWriter:
             self.writer = new(self.sink, self.schema)
 
     def columns(self, columns: Iterable[Any]) -> None:
-        """Write a block by its columns: arrays, or lists whose None is nothing."""
+        """Write a block by its columns: arrays, also masked ones, or lists whose None is nothing."""
         arrow = pyarrow()
         arrays = [arrow.array(column, type=field.type) for column, field in zip(columns, self.schema, strict=True)]
         self.batch(arrow.record_batch(arrays, schema=self.schema))

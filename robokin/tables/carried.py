@@ -10,6 +10,7 @@ from typing import Any
 
 from robokin.errors import shown
 from robokin.tables.text_source import Say
+from robokin.tables.written_rows import encode
 
 QUOTE = '"'
 
@@ -92,12 +93,16 @@ class Carried:
         """The next row's cells, as text."""
         return [cell_text(value) for value in self._next()]
 
+    def fronts(self, count: int) -> list[str]:
+        """What stands in front of the next rows' lines of a CSV."""
+        return [_line(self.cells()) for _ in range(count)]
+
     def columns(self, count: int) -> list[list[Any]]:
         """The next rows' cells by their columns: values of the columns that have a type, else text."""
         rows = [self._next() for _ in range(count)] if self.names else []
         kinds = self.kinds or ("text",) * len(self.names)
         return [
-            [value if kind != "text" else cell_text(value) for value in column]
+            [value if kind != "text" else _plain(cell_text(value)) for value in column]
             for kind, column in zip(kinds, zip(*rows, strict=True), strict=True)
         ]
 
@@ -111,10 +116,10 @@ class Carried:
         """A heading and lines of CSV, each behind its cells: those that are given, or the next ones."""
         if not self.names:
             return head + lines
-        first = [_line(self.names) + head.removesuffix(b"\n")] if head else []
+        first = [encode(_line(self.names)) + head.removesuffix(b"\n")] if head else []
         rows = lines.splitlines()
         own = (self.cells() for _ in rows) if cells is None else cells
-        return b"".join(line + b"\n" for line in [*first, *map(bytes.__add__, map(_line, own), rows)])
+        return b"".join(line + b"\n" for line in [*first, *map(bytes.__add__, map(encode, map(_line, own)), rows)])
 
     def _next(self) -> Sequence[Any]:
         return self.rows.popleft() if self.rows else ()
@@ -138,12 +143,17 @@ def _unsaid(sentence: str) -> None:
     """Say nothing."""
 
 
-def _line(cells: Sequence[str]) -> bytes:
+def _line(cells: Sequence[str]) -> str:
     """Cells and the comma behind the last, quoted where they need it."""
     line = ",".join(cells)
     if SPECIAL.search(line) or line.count(",") >= len(cells):
         line = ",".join(f'"{cell.replace(QUOTE, QUOTE * 2)}"' for cell in cells)
-    return line.encode(errors="backslashreplace") + b","
+    return f"{line},"
+
+
+def _plain(text: str) -> str:
+    """A text as UTF-8 has it."""
+    return text if text.isascii() else encode(text).decode()
 
 
 def cell_text(value: Any) -> str:

@@ -134,6 +134,23 @@ def csv_rows(table: Array) -> bytes:
 COMMA, END_OF_LINE = b",\n"
 
 
+def number_lines(table: Array) -> list[str]:
+    """Rows of numbers (m, k) as `csv_records` writes them, by repr, without the ends of the lines."""
+    native = _kernel()
+    if native is None:
+        return [",".join(map(repr, row)) for row in table.tolist()]
+    import numpy as np
+
+    lines: list[str] = native.text_of_rows(table).decode("ascii").split("\n")
+    lines.pop()
+    # The kernel has other words for these than repr, or may have: 1e-7 for 1e-07, NaN for nan.
+    size = np.abs(table)
+    same = ((size >= 1e-3) & (size < 1e15)) | (size <= 1e-10)
+    for row in np.flatnonzero(~same.all(axis=1)).tolist():
+        lines[row] = ",".join(map(repr, table[row].tolist()))
+    return lines
+
+
 def _kernel() -> ModuleType | None:
     """The native kernel; it is loaded with numpy, and so not before there are rows."""
     from robokin.kernel.native_kernel import native
@@ -176,6 +193,13 @@ def no_formula(cell: Any) -> Any:
 def csv_without_formulas(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> bytes:
     """The same as `csv_records` for texts that strangers wrote, such as names of files and of students."""
     return csv_records(columns, (map(no_formula, row) for row in rows))
+
+
+def csv_cell(text: str) -> str:
+    """A text as a cell among others, quoted where it needs it."""
+    written = io.StringIO()
+    csv.writer(written, lineterminator="").writerow([text, ""])
+    return written.getvalue()[:-1]
 
 
 def csv_records(columns: Sequence[str] | None, rows: Iterable[Iterable[Any]]) -> bytes:

@@ -235,3 +235,15 @@ def test_threads(rng):
     for thread in threads:
         thread.join()
     assert same == [True] * 120
+
+
+def test_rows_are_written_as_by_repr_with_the_kernel_and_without() -> None:
+    rng = np.random.default_rng(1)
+    x = rng.normal(size=(2000, 4)) * 10.0 ** rng.integers(-20, 20, (2000, 4))
+    x[:4] = [
+        [0.0, -0.0, np.nan, np.inf],
+        [1e-7, 5e-5, 1e-10, 1e-9],
+        [1e15, 1e16, 1e17, 1e22],
+        [1e-3, 1e-4, 5e-324, 1.0],
+    ]
+    assert written_rows.number_lines(x) == [",".join(map(repr, row)) for row in x.tolist()]
