@@ -116,9 +116,10 @@ class QuestionServer:
         front: dict[str, Any] = _front(question)
         if status:
             front["status"] = status
-        if notes:
-            front["notes"] = notes
-        return json_line(front | (document if isinstance(document, dict) else {"documents": document}))
+        answer = document if isinstance(document, dict) else {"documents": document}
+        if notes:  # some documents have notes of their own
+            front["notes"] = answer["notes"] = [*dict.fromkeys([*notes, *answer.get("notes", ())])]
+        return json_line(front | answer)
 
 
 def _front(question: AskedLine) -> dict[str, Any]:

@@ -152,7 +152,8 @@ def titled_with(word: str) -> list[str]:
     start = re.compile(rf"(?<!\w){re.escape(word)}", re.IGNORECASE)
     found = []
     for path in library_folder().rglob("*.yaml"):
-        title = TITLE.search(path.read_text(encoding="utf-8"))
-        if title and start.search(title[1]):
-            found.append(path.stem)
+        with contextlib.suppress(OSError, UnicodeDecodeError):  # of a file that is spoiled no title is known
+            title = TITLE.search(path.read_text(encoding="utf-8"))
+            if title and start.search(title[1]):
+                found.append(path.stem)
     return sorted(found)

@@ -83,6 +83,18 @@ def test_a_list_of_documents_a_no_and_notes(call, ask):
     assert wrong["status"] == 3
 
 
+def test_the_notes_of_a_document_do_not_hide_what_is_said_of_its_description(call, ask, tmp_path):
+    """A reach of 600 m is noted on standard error; that a joint is to spare is the document's own note."""
+    arm = tmp_path / "arm.yaml"
+    rows = "  - {type: P, alpha: 90, limits: [0, 1]}\n" + "  - {type: R, a: 150}\n" * 3
+    arm.write_text(f"robokin: 1\nname: Slip\nunits: {{angle: deg}}\njoints:\n{rows}")
+    words = ["workspace", str(arm), "--samples", "64"]
+    alone = call(*words, "--json")
+    said = alone.err.removeprefix("robokin: ").rstrip("\n")
+    assert "too large for a machine" in said and alone.json["notes"]
+    assert ask(json.dumps({"words": words})) == [{**alone.json, "notes": [said, *alone.json["notes"]]}]
+
+
 def test_questions_in_json(call, ask):
     """A key is an option: numbers, lists, rows, flags, names with values."""
     questions = [

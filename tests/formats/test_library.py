@@ -124,6 +124,17 @@ def test_a_file_is_read_from_a_path(tmp_path, monkeypatch):
     assert load("puma560").types == "RRRRRR", "a name is the library's, whatever lies in the folder"
 
 
+def test_a_spoiled_file_of_the_library_does_not_hide_what_a_wrong_name_may_mean(tmp_path, monkeypatch):
+    (tmp_path / "arms").mkdir()
+    (tmp_path / "arms" / "a-good.yaml").write_text("robokin: 1\nname: Puma\n")
+    (tmp_path / "arms" / "b-binary.yaml").write_bytes(bytes(range(256)))
+    (tmp_path / "arms" / "c-link.yaml").symlink_to(tmp_path / "nothing.yaml")
+    (tmp_path / "arms" / "d-folder.yaml").mkdir()
+    monkeypatch.setattr("robokin.formats.library.library_folder", lambda: tmp_path)
+    with pytest.raises(InputError, match=r"no robot or mechanism named 'puma'.*in the title of a-good"):
+        load_any("puma")
+
+
 def test_a_file_in_the_folder_is_pointed_at(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("myarm").write_text(arm())
