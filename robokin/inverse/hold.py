@@ -252,7 +252,7 @@ def _checked(robot: Robot, hold: Mapping[int, float]) -> dict[int, float]:
                 f"hold: found joint {joint!r}, expected 0 to {robot.n - 1}: the joints of {robot.name} count from 0"
             )
         try:
-            number = float(value)
+            number = np.nan if isinstance(value, (bool, np.bool_, str)) else float(value)
         except (TypeError, ValueError):
             number = np.nan
         if not math.isfinite(number):

@@ -150,6 +150,8 @@ def test_a_held_value_outside_the_limits():
         ({"q3": 0.0}, "joint 'q3'"),
         ({True: 0.0}, "joint True"),
         ({2: np.nan}, "finite"),
+        ({2: True}, "finite"),
+        ({2: "1.0"}, "finite"),
         ({2: "a"}, "finite"),
         ({2: None}, "finite"),
         (dict.fromkeys(range(7), 0.0), "all 7 joints"),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from robokin.inverse import verify
+from robokin.inverse.elimination import raghavan_roth
 from robokin.inverse.self_motion import onto_limits
 from robokin.inverse.self_motion.root_neighbours import NEIGHBOURS
 
@@ -54,3 +55,16 @@ def test_nothing_beside_its_limits_is_sorted_out(rng):
     assert len(beside) > 50
     assert np.isin(beside, left).all()
     assert gaps[left].max() <= 10.0 * NEIGHBOURS
+
+
+def test_frames_of_a_candidate_do_not_depend_on_the_others(rng):
+    """A product by BLAS has other last digits for one column than for many."""
+    link = rng.normal(size=(1, 4, 4))
+    link[:, 3] = 0.0, 0.0, 0.0, 1.0
+    many = rng.normal(size=(4, 3, 37)) + 1j * rng.normal(size=(4, 3, 37))
+    together = raghavan_roth._times_link(many, link)
+    for i in range(37):
+        alone = raghavan_roth._times_link(np.ascontiguousarray(many[..., i : i + 1]), link)
+        assert alone.tobytes() == np.ascontiguousarray(together[..., i : i + 1]).tobytes()
+    expected = np.einsum("kcs,kj->jcs", many, link[0])
+    assert np.allclose(together, expected, rtol=0.0, atol=1e-13)

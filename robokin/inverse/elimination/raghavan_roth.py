@@ -264,10 +264,10 @@ class Elimination:
             Y = _times_link(_after_joint(Y, turns[i], -q[i]), _of(invert(M[i - 1]), index))
         # Joint 3 turns or slides X to Y.
         if turns[3]:
-            xx, yy, yx, xy = (np.einsum("rs,rs->s", X[i], Y[j]) for i, j in ((0, 0), (1, 1), (1, 0), (0, 1)))
+            xx, yy, yx, xy = (_dots(X[i], Y[j]) for i, j in ((0, 0), (1, 1), (1, 0), (0, 1)))
             q[3] = angle_of(xx + yy, yx - xy, 2.0)
         else:
-            q[3] = np.einsum("rs,rs->s", X[2], Y[3] - X[3])
+            q[3] = _dots(X[2], Y[3] - X[3])
         return q
 
 
@@ -302,13 +302,19 @@ def _after_joint(X: NDArray[Any], turns: bool, q: NDArray[Any]) -> NDArray[Any]:
     return X
 
 
+def _dots(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
+    """(s,) the products of vectors (3, s), each summed in the same order."""
+    return np.asarray(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+
+
 def _times_link(X: NDArray[Any], M: Array) -> NDArray[Any]:
-    """X M for columns X (4, 3, s) and a link, (1, 4, 4) or of each (s, 4, 4)."""
-    if len(M) == 1:
-        # Real and imaginary parts are two real columns: half the work of a complex product.
-        return np.asarray((M[0].T @ X.view(np.float64).reshape(4, -1)).view(X.dtype).reshape(X.shape))
+    """X M for columns X (4, 3, s) and a link, (1, 4, 4) or of each (s, 4, 4).
+
+    Sums in one order, whatever s: a product by BLAS has other last digits for another number of columns.
+    """
     out = np.empty_like(X)
-    for j, entries in enumerate(M.transpose(2, 1, 0)):
+    columns = M[0].T.tolist() if len(M) == 1 else M.transpose(2, 1, 0)
+    for j, entries in enumerate(columns):
         out[j] = X[0] * entries[0] + X[1] * entries[1] + X[2] * entries[2]
     out[3] += X[3]
     return out
